@@ -1,0 +1,16 @@
+# Writes OUTPUT, a C++ file with the bytes of each of SOURCES (paths below ROOT). Bytes, not string literals: no escaping, no
+# length limit. A path is known to the program without its include/ or src/ prefix, as #include spells it.
+set(text "// Made by cmake/embed_sources.cmake; do not edit.\n#include \"backend/program_source.hpp\"\n\nnamespace setka::backend {\n\n")
+set(table "")
+set(index 0)
+foreach(source IN LISTS SOURCES)
+    file(READ ${ROOT}/${source} hex HEX)
+    string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${hex}")
+    string(REGEX REPLACE "^(include|src)/" "" name ${source})
+    string(APPEND text "static const unsigned char source_${index}[] = {${bytes}};\n")
+    string(APPEND table "    {\"${name}\", {reinterpret_cast<const char*>(source_${index}), sizeof(source_${index})}},\n")
+    math(EXPR index "${index} + 1")
+endforeach()
+string(APPEND text "\nstatic const EmbeddedSource sources[] = {\n${table}};\n\nstd::span<const EmbeddedSource> embedded_sources() { return sources; }\n\n}  // namespace setka::backend\n")
+file(WRITE ${OUTPUT}.new "${text}")
+file(RENAME ${OUTPUT}.new ${OUTPUT})

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: MIT
+/// Where does the work run? Devices of every backend in one list, an in-order queue on a device, and typed buffers.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+namespace setka {
+
+namespace backend {  // the seam of the library's inside; opaque to users
+class Device;
+class Memory;
+class Queue;
+}  // namespace backend
+
+enum class Backend { OpenCL, Cuda };
+enum class DeviceType { Cpu, Gpu, Accelerator, Other };
+
+[[nodiscard]] const char* to_string(Backend backend) noexcept;
+[[nodiscard]] const char* to_string(DeviceType type) noexcept;
+
+/// What a device says of itself. None of it influences what a table, a hit or a picture contains.
+struct DeviceInfo {
+    std::string id;        ///< what Device::open takes: "opencl:0", …
+    Backend backend = Backend::OpenCL;
+    DeviceType type = DeviceType::Other;
+    std::string name;
+    std::string vendor;
+    std::string platform;  ///< the driver's platform with its version
+    std::string driver;    ///< the driver's version
+    std::uint32_t compute_units = 0;
+    std::uint32_t max_work_group_size = 0;
+    std::uint64_t memory_bytes = 0;
+    std::uint64_t max_allocation_bytes = 0;
+    std::uint64_t local_memory_bytes = 0;
+    std::uint64_t max_parameter_bytes = 0;
+    bool unified_memory = false;                ///< host and device share memory: host buffers are used in place
+    bool correctly_rounded_divide_sqrt = false; ///< needed for identical bits
+};
+
+/// Every usable device of every backend, in a stable order. A missing driver means fewer devices, never an error.
+[[nodiscard]] std::vector<DeviceInfo> enumerate_devices();
+
+/// Why backends or devices are missing from enumerate_devices(), one sentence each; empty if nothing is missing.
+[[nodiscard]] std::vector<std::string> enumeration_notes();
+
+/// How scan, sort and reduce are laid out on the device. It never changes a result.
+enum class PrimitiveShape {
+    Auto,    ///< Serial on a CPU, Group elsewhere
+    Serial,  ///< one work-item a group over a long run: fastest on CPUs, no barrier ever waits
+    Group,   ///< groups of work-items with local memory: for GPUs
+};
+
+/// How a device is opened. The defaults are right for use; the rest serves tests and measurements.
+struct DeviceOptions {
+    /// Work-items in a group of per-element kernels: a power of two up to 256; 0 picks 64 on a CPU and 128 elsewhere.
+    std::uint32_t work_group_size = 0;
+    PrimitiveShape primitives = PrimitiveShape::Auto;
+    /// Bytes that setka may hold on the device at a time; 0 picks three quarters of the device's memory.
+    std::uint64_t memory_budget_bytes = 0;
+};
+
+class Queue;
+
+/// A device that was opened: its kernels are compiled, its memory is pooled. Copies share the device.
+class Device {
+  public:
+    /// Opens the device with this id, or the one device whose name contains `selector` (ignoring case). With an empty
+    /// selector: the environment's SETKA_DEVICE, else the first GPU, else the first device.
+    /// Throws InvalidArgument if nothing or more than one device matches, Unsupported if there is no device at all.
+    [[nodiscard]] static Device open(std::string_view selector = {}, const DeviceOptions& options = {});
+
+    [[nodiscard]] const DeviceInfo& info() const noexcept;
+    [[nodiscard]] const DeviceOptions& options() const noexcept;  ///< with every "0" and "Auto" resolved
+    [[nodiscard]] Queue make_queue() const;
+
+    /// Bytes of live buffers now, and the most there were since the last reset_peak_memory().
+    [[nodiscard]] std::uint64_t memory_in_use_bytes() const noexcept;
+    [[nodiscard]] std::uint64_t peak_memory_bytes() const noexcept;
+    void reset_peak_memory() const noexcept;
+    /// Gives cached, unused allocations back to the driver.
+    void trim() const;
+
+    /// Inside the library only.
+    explicit Device(std::shared_ptr<backend::Device> impl) : impl_(std::move(impl)) {}
+    [[nodiscard]] const std::shared_ptr<backend::Device>& impl() const noexcept { return impl_; }
+
+  private:
+    std::shared_ptr<backend::Device> impl_;
+};
+
+/// A typed view of one device allocation; copies share it. T is a plain struct without padding.
+/// Memory goes back to the pool of the queue it came from, in that queue's order, with the last copy.
+template <typename T>
+class Buffer {
+    static_assert(std::is_trivially_copyable_v<T>);
+
+  public:
+    Buffer() = default;
+    Buffer(std::shared_ptr<backend::Memory> memory, std::size_t size)
+        : memory_(std::move(memory)), size_(size) {}
+
+    [[nodiscard]] std::size_t size() const noexcept { return size_; }  ///< elements
+    [[nodiscard]] std::size_t size_bytes() const noexcept { return size_ * sizeof(T); }
+    [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
+    [[nodiscard]] const std::shared_ptr<backend::Memory>& memory() const noexcept { return memory_; }
+
+  private:
+    std::shared_ptr<backend::Memory> memory_;
+    std::size_t size_ = 0;
+};
+
+/// Device time spent in one named stage.
+struct StageTime {
+    std::string stage;
+    double time_ms = 0;
+    std::uint32_t launches = 0;
+};
+
+/// One in-order stream of work on a device: what is enqueued later sees what was enqueued earlier. Calls return before the
+/// device is done unless they say otherwise. One queue belongs to one host thread at a time.
+class Queue {
+  public:
+    /// A buffer of `size` elements with undefined contents. `name` appears in memory errors.
+    /// Throws OutOfMemory if the device's budget or its largest single allocation would be exceeded.
+    template <typename T>
+    [[nodiscard]] Buffer<T> make_buffer(std::size_t size, std::string_view name) {
+        return {allocate(size, sizeof(T), name), size};
+    }
+
+    /// A buffer with a copy of `source`, which may be changed as soon as the call returns.
+    template <typename T>
+    [[nodiscard]] Buffer<std::remove_const_t<T>> upload(std::span<T> source, std::string_view name) {
+        auto buffer = make_buffer<std::remove_const_t<T>>(source.size(), name);
+        write(buffer.memory(), source.data(), source.size_bytes());
+        return buffer;
+    }
+
+    /// Uses `storage` itself as the buffer where host and device share memory, and copies otherwise. `storage` must stay
+    /// alive and untouched until finish() after the last use, or until read_back() of the buffer.
+    template <typename T>
+    [[nodiscard]] Buffer<std::remove_const_t<T>> wrap(std::span<T> storage, std::string_view name) {
+        return {wrap_host(const_cast<std::remove_const_t<T>*>(storage.data()), storage.size(), sizeof(T),
+                          std::is_const_v<T>, name),
+                storage.size()};
+    }
+
+    /// Copies `source` over the first elements of `target`. Throws InvalidArgument if it does not fit.
+    template <typename T>
+    void upload(std::span<const T> source, const Buffer<T>& target) {
+        check_fits(source.size(), target.size());
+        write(target.memory(), source.data(), source.size_bytes());
+    }
+
+    /// Waits and copies the first elements of `source`; a copy of a buffer onto the memory that it wraps costs nothing.
+    template <typename T>
+    void download(const Buffer<T>& source, std::span<T> target) {
+        check_fits(target.size(), source.size());
+        read(source.memory(), target.data(), target.size_bytes());
+    }
+    template <typename T>
+    [[nodiscard]] std::vector<T> download(const Buffer<T>& source) {
+        std::vector<T> target(source.size());
+        read(source.memory(), target.data(), source.size_bytes());
+        return target;
+    }
+
+    /// Waits until everything enqueued so far is done. Errors of asynchronous work surface here and in download().
+    void finish();
+
+    /// Device time by stage since the last call, in order of first use; waits for what was enqueued.
+    [[nodiscard]] std::vector<StageTime> take_timings();
+
+    [[nodiscard]] const Device& device() const noexcept { return device_; }
+
+    /// Inside the library only.
+    Queue(Device device, std::shared_ptr<backend::Queue> impl)
+        : device_(std::move(device)), impl_(std::move(impl)) {}
+    [[nodiscard]] backend::Queue& impl() const noexcept { return *impl_; }
+
+  private:
+    [[nodiscard]] std::shared_ptr<backend::Memory> allocate(std::size_t size, std::size_t element_bytes,
+                                                            std::string_view name);
+    [[nodiscard]] std::shared_ptr<backend::Memory> wrap_host(void* data, std::size_t size, std::size_t element_bytes,
+                                                             bool read_only, std::string_view name);
+    void write(const std::shared_ptr<backend::Memory>& target, const void* source, std::size_t size_bytes);
+    void read(const std::shared_ptr<backend::Memory>& source, void* target, std::size_t size_bytes);
+    static void check_fits(std::size_t count, std::size_t capacity);
+
+    Device device_;
+    std::shared_ptr<backend::Queue> impl_;
+};
+
+}  // namespace setka

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+/// How do scenes and pictures get in and out of files? Its own target, setka::io: the core does not link it.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "setka/image.hpp"
+#include "setka/scene.hpp"
+
+namespace setka::io {
+
+/// Reads OBJ+MTL, PLY, STL, OFF, glTF and GLB: node transforms, materials, cameras and lights; polygons become triangles,
+/// points and lines are dropped. Throws InvalidData, in one line with the file's name, for a file that is missing, empty,
+/// truncated or malformed, of an unknown format, without any triangle, with a non-finite vertex or an index out of range.
+[[nodiscard]] Scene load_scene(const std::filesystem::path& file);
+/// All files in one scene, in order.
+[[nodiscard]] Scene load_scene(std::span<const std::filesystem::path> files);
+
+/// Writes a binary little-endian PLY with float positions, and normals where every mesh has them; instances are transformed.
+/// Nothing is left behind on failure. Throws InvalidArgument if the file cannot be written.
+void save_ply(const std::filesystem::path& file, const Scene& scene);
+
+/// Writes a picture by its extension: 8-bit sRGB for PNG, JPEG, TIFF, BMP, TGA and PPM; linear float for EXR, HDR and PFM.
+/// Nothing is left behind on failure. Throws InvalidArgument for an unknown extension or a file that cannot be written.
+void write_image(const std::filesystem::path& file, const Image& image);
+/// Throws what write_image would throw for this file, before the work is done.
+void check_image_writable(const std::filesystem::path& file);
+
+/// Reads rays from a NumPy file: float32 of shape (n, 8), C order: origin, tmin, direction, tmax.
+[[nodiscard]] std::vector<Ray> read_rays(const std::filesystem::path& file);
+/// Writes hits as a NumPy structured array: t, u, v (float32), primitive, instance (uint32; 2^32 - 1 for a miss).
+void write_hits(const std::filesystem::path& file, std::span<const Hit> hits);
+/// Writes any-hit results as a NumPy uint8 array of 0 and 1.
+void write_occlusion(const std::filesystem::path& file, std::span<const std::uint32_t> occluded);
+
+}  // namespace setka::io

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+/// What does the scene look like? Whitted ray tracing (1980) as passes over batches of rays that stay on the device.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+#include "setka/image.hpp"
+#include "setka/tracer.hpp"
+
+namespace setka {
+
+/// What a pixel shows.
+enum class View {
+    Shaded,
+    Normals,  ///< shading normal, (n + 1) / 2
+    Depth,    ///< t over the farthest t of the picture, near is bright
+    Steps,    ///< grid cells visited by the primary ray, as a heat map with the legend in RenderStatistics
+    Tests,    ///< triangles tested by the primary ray, likewise
+};
+
+struct RenderOptions {
+    std::uint32_t width = 1280;          ///< 1 to 16384
+    std::uint32_t height = 720;          ///< 1 to 16384
+    std::uint32_t samples_per_axis = 1;  ///< 1 to 16: n * n primary rays a pixel, on a regular grid
+    std::uint32_t max_depth = 6;         ///< 0 to 16: mirror and refraction rays after the primary one
+    View view = View::Shaded;
+    TraceOptions trace;
+    /// Called after each batch with the share that is done, 0 to 1.
+    std::function<void(double)> progress;
+};
+
+/// What a render cost.
+struct RenderStatistics {
+    std::uint64_t primary_rays = 0;
+    std::uint64_t secondary_rays = 0;  ///< mirror and refraction
+    std::uint64_t shadow_rays = 0;
+    double wall_ms = 0;
+    std::uint32_t heat_maximum = 0;  ///< Steps and Tests: the value of the hottest colour
+    double heat_mean = 0;            ///< Steps and Tests: mean over the pixels
+};
+
+class Renderer {
+  public:
+    /// Throws InvalidArgument for options out of range.
+    explicit Renderer(const RenderOptions& options = {});
+    /// Renders `scene`, of which `structure` was built, and waits. Throws InvalidData for a degenerate camera.
+    [[nodiscard]] Image render(Queue& queue, const DeviceScene& scene, const Structure& structure, const Camera& camera);
+    [[nodiscard]] const RenderStatistics& statistics() const noexcept { return statistics_; }
+
+  private:
+    RenderOptions options_;
+    RenderStatistics statistics_;
+};
+
+/// The rays of a pinhole camera through the pixel centres, row by row from the top: for tests and benchmarks of one's own.
+[[nodiscard]] Buffer<Ray> camera_rays(Queue& queue, const Camera& camera, std::uint32_t width, std::uint32_t height,
+                                      std::uint32_t samples_per_axis = 1);
+
+}  // namespace setka

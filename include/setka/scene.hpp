@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+/// What is there to see? Meshes, their placed instances, materials, lights and a camera, as plain host values.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "setka/device.hpp"
+#include "setka/layout.h"
+
+namespace setka {
+
+using Ray = ::SetkaRay;
+using Hit = ::SetkaHit;
+using Bounds = ::SetkaBounds;
+using TraceCost = ::SetkaTraceCost;
+
+/// Three packed floats: a point, a direction or a linear RGB colour.
+struct Float3 {
+    float x = 0, y = 0, z = 0;
+    friend bool operator==(const Float3&, const Float3&) = default;
+};
+
+/// The vertex indices of a triangle.
+struct Triangle {
+    std::uint32_t a = 0, b = 0, c = 0;
+    friend bool operator==(const Triangle&, const Triangle&) = default;
+};
+
+/// An affine map, three rows of four: world = rows * (x, y, z, 1).
+struct Matrix34 {
+    std::array<float, 12> rows{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    friend bool operator==(const Matrix34&, const Matrix34&) = default;
+};
+
+/// A surface for Whitted shading; colours are linear RGB, 0 to 1 unless said otherwise.
+struct Material {
+    std::string name;
+    Float3 diffuse{0.7f, 0.7f, 0.7f};
+    Float3 specular{0.04f, 0.04f, 0.04f};  ///< colour of highlights and of mirror reflection
+    Float3 emission{};                     ///< added as it is; may exceed 1
+    float shininess = 32;                  ///< Blinn-Phong exponent, 1 to 65536; rounded to the next power of two
+    float reflectivity = 0;                ///< share of a mirror ray, 0 to 1
+    float transparency = 0;                ///< share of a refracted ray, 0 to 1: 1 is clear glass
+    Float3 transmission{1, 1, 1};          ///< tint of the refracted ray
+    float refractive_index = 1.5f;         ///< of the inside, relative to the outside; 1 does not bend
+};
+
+/// Triangles with their vertices in object space.
+struct Mesh {
+    std::string name;
+    std::vector<Float3> positions;
+    std::vector<Triangle> triangles;
+    std::vector<Float3> normals;  ///< one per position for smooth shading, or empty for flat shading
+};
+
+/// A mesh placed in the world with a material.
+struct Instance {
+    std::uint32_t mesh = 0;
+    Matrix34 transform;
+    std::uint32_t material = 0;
+    std::uint32_t mask = 0xffffffffu;  ///< visible to a query whose mask shares a bit with this one
+};
+
+struct PointLight {
+    Float3 position;
+    Float3 intensity{1, 1, 1};  ///< colour reaching a surface at distance `reference_distance`
+    /// Where `intensity` holds; the light falls off with the square of the distance from there. 0: no fall-off.
+    float reference_distance = 0;
+};
+
+struct DirectionalLight {
+    Float3 direction{0, -1, 0};  ///< the way the light travels; any length but 0
+    Float3 intensity{1, 1, 1};
+};
+
+/// A pinhole camera.
+struct Camera {
+    Float3 eye{0, 0, 1};
+    Float3 target{};
+    Float3 up{0, 1, 0};
+    float vertical_fov_degrees = 50;  ///< above 0, below 180
+};
+
+/// A vertical gradient seen by rays that leave the scene, and the light that comes from everywhere.
+struct Background {
+    Float3 zenith{0.35f, 0.5f, 0.75f};
+    Float3 horizon{0.9f, 0.93f, 0.97f};
+    Float3 ground{0.35f, 0.33f, 0.3f};
+    float ambient = 0.35f;  ///< how much of the background's colour lights a surface turned to it
+};
+
+/// Everything that is rendered. A triangle's number in the scene counts instances in order, each with all triangles of
+/// its mesh in order.
+struct Scene {
+    std::vector<Mesh> meshes;
+    std::vector<Instance> instances;
+    std::vector<Material> materials;  ///< at least one if there is an instance
+    std::vector<PointLight> point_lights;
+    std::vector<DirectionalLight> directional_lights;
+    std::optional<Camera> camera;
+    Background background;
+
+    /// Triangles of all instances; 64-bit, since instances multiply.
+    [[nodiscard]] std::uint64_t triangle_count() const noexcept;
+    /// The box around all transformed vertices, computed on the host; lower > upper if there is no triangle.
+    [[nodiscard]] Bounds bounds() const;
+    /// Throws InvalidData that names the first mesh, instance, light or camera that cannot be used: an index out of range, a
+    /// non-finite number, a normal count that differs from the position count, a degenerate camera, no triangle at all.
+    void validate() const;
+};
+
+/// Appends `source` to `target`: meshes, instances, materials and lights with indices moved; the camera if there is none.
+void append(Scene& target, Scene source);
+
+/// A camera that sees the whole box from direction (0.6, 0.35, 1) of its centre, for an image of this width over height.
+[[nodiscard]] Camera frame(const Bounds& bounds, float aspect, float vertical_fov_degrees = 50);
+/// A camera inside the box, below its middle, looking along its longer horizontal side.
+[[nodiscard]] Camera frame_inside(const Bounds& bounds, float vertical_fov_degrees = 65);
+/// Lights for a scene without any: a key light over the camera's shoulder and a weak fill light at the eye.
+void add_default_lights(Scene& scene, const Camera& camera);
+
+/// A scene on a device: vertex, index, normal, instance and material tables. The host scene is not needed any more.
+class DeviceScene {
+  public:
+    /// Validates and uploads. Throws what Scene::validate throws, InvalidArgument above 2^28 triangles, OutOfMemory.
+    DeviceScene(Queue& queue, const Scene& scene);
+
+    [[nodiscard]] std::uint32_t triangle_count() const noexcept { return triangle_count_; }
+    [[nodiscard]] std::uint32_t instance_count() const noexcept { return instance_count_; }
+    [[nodiscard]] std::uint64_t size_bytes() const noexcept;
+
+    [[nodiscard]] const Buffer<float>& positions() const noexcept { return positions_; }        ///< 3 a vertex
+    [[nodiscard]] const Buffer<std::uint32_t>& indices() const noexcept { return indices_; }    ///< 3 a triangle of a mesh
+    [[nodiscard]] const Buffer<float>& normals() const noexcept { return normals_; }            ///< 3 a vertex, or 3 in all
+    [[nodiscard]] const Buffer<::SetkaInstance>& instances() const noexcept { return instances_; }
+    /// instance_count + 1 numbers: the first scene triangle of each instance, then the total.
+    [[nodiscard]] const Buffer<std::uint32_t>& instance_starts() const noexcept { return instance_starts_; }
+    /// Host copies for error messages and shading.
+    [[nodiscard]] const std::vector<Material>& materials() const noexcept { return materials_; }
+    [[nodiscard]] const std::vector<PointLight>& point_lights() const noexcept { return point_lights_; }
+    [[nodiscard]] const std::vector<DirectionalLight>& directional_lights() const noexcept { return directional_lights_; }
+    [[nodiscard]] const Background& background() const noexcept { return background_; }
+
+  private:
+    std::uint32_t triangle_count_ = 0;
+    std::uint32_t instance_count_ = 0;
+    Buffer<float> positions_;
+    Buffer<std::uint32_t> indices_;
+    Buffer<float> normals_;
+    Buffer<::SetkaInstance> instances_;
+    Buffer<std::uint32_t> instance_starts_;
+    std::vector<Material> materials_;
+    std::vector<PointLight> point_lights_;
+    std::vector<DirectionalLight> directional_lights_;
+    Background background_;
+};
+
+}  // namespace setka

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+/// The whole core API in one include.
+#pragma once
+
+#include "setka/device.hpp"
+#include "setka/error.hpp"
+#include "setka/grid.hpp"
+#include "setka/image.hpp"
+#include "setka/layout.h"
+#include "setka/renderer.hpp"
+#include "setka/scene.hpp"
+#include "setka/scenes.hpp"
+#include "setka/structure.hpp"
+#include "setka/tracer.hpp"
+#include "setka/version.hpp"

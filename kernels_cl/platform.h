@@ -1,0 +1,32 @@
+/* SPDX-License-Identifier: MIT */
+/** How does OpenCL C 1.2 spell the words of the dialect (src/device/dialect.h)? */
+#ifndef SETKA_PLATFORM_H
+#define SETKA_PLATFORM_H
+
+/* Without this a * b + c may be fused, and 4 to 8 % of results differ between devices. */
+#pragma OPENCL FP_CONTRACT OFF
+
+#define SK_KERNEL __kernel
+#define SK_FUNCTION static inline
+#define SK_GLOBAL __global
+#define SK_LOCAL __local
+#define SK_LOCAL_STORAGE __local
+#define SK_RESTRICT restrict
+#define SK_BARRIER() barrier(CLK_LOCAL_MEM_FENCE)
+
+typedef uint sk_u32;
+typedef int sk_i32;
+typedef ulong sk_u64;
+
+#define sk_global_id() ((sk_u32)get_global_id(0))
+#define sk_local_id() ((sk_u32)get_local_id(0))
+#define sk_group_id() ((sk_u32)get_group_id(0))
+#define sk_local_size() ((sk_u32)get_local_size(0))
+#define sk_float_bits(f) as_uint(f)
+#define sk_bits_float(u) as_float(u)
+#define sk_sqrt(f) sqrt(f)
+#define sk_floor(f) floor(f)
+#define sk_atomic_min(p, v) atomic_min(p, v)
+#define sk_atomic_add(p, v) atomic_add(p, v)
+
+#endif

@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: MIT */
+/** How does CUDA C++ spell the words of the dialect (src/device/dialect.h)? */
+#ifndef SETKA_PLATFORM_H
+#define SETKA_PLATFORM_H
+
+#define SK_KERNEL extern "C" __global__
+#define SK_FUNCTION static __device__ __forceinline__
+#define SK_GLOBAL
+#define SK_LOCAL
+#define SK_LOCAL_STORAGE __shared__
+#define SK_RESTRICT __restrict__
+#define SK_BARRIER() __syncthreads()
+
+typedef unsigned int sk_u32;
+typedef int sk_i32;
+typedef unsigned long long sk_u64;
+
+#define sk_global_id() (blockIdx.x * blockDim.x + threadIdx.x)
+#define sk_local_id() (threadIdx.x)
+#define sk_group_id() (blockIdx.x)
+#define sk_local_size() (blockDim.x)
+#define sk_float_bits(f) __float_as_uint(f)
+#define sk_bits_float(u) __uint_as_float(u)
+#define sk_sqrt(f) __fsqrt_rn(f)
+#define sk_floor(f) floorf(f)
+#define sk_atomic_min(p, v) atomicMin(p, v)
+#define sk_atomic_add(p, v) atomicAdd(p, v)
+
+#endif

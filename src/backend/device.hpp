@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+/// What must a backend do? The seam: a device with its memory, and an in-order queue with a dozen verbs. Nothing above this
+/// file knows an API, and nothing below it knows an algorithm.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/arguments.hpp"
+#include "core/kernels.hpp"
+#include "setka/device.hpp"
+
+namespace setka::backend {
+
+/// One allocation. Its destructor gives the bytes back to the pool of the queue it came from.
+class Memory {
+  public:
+    Memory(std::uint64_t size_bytes, std::string name) : size_bytes_(size_bytes), name_(std::move(name)) {}
+    virtual ~Memory() = default;
+    Memory(const Memory&) = delete;
+    Memory& operator=(const Memory&) = delete;
+
+    [[nodiscard]] std::uint64_t size_bytes() const noexcept { return size_bytes_; }
+    [[nodiscard]] const std::string& name() const noexcept { return name_; }
+
+  private:
+    std::uint64_t size_bytes_;
+    std::string name_;
+};
+
+class Queue {
+  public:
+    virtual ~Queue() = default;
+    [[nodiscard]] virtual std::shared_ptr<Memory> allocate(std::uint64_t size_bytes, std::string_view name) = 0;
+    /// Host memory as a device allocation where the two are one, else nullptr.
+    [[nodiscard]] virtual std::shared_ptr<Memory> wrap_host(void* data, std::uint64_t size_bytes, bool read_only,
+                                                            std::string_view name) = 0;
+    virtual void launch(Kernel kernel, std::uint32_t group_count, std::uint32_t group_size,
+                        const Arguments& arguments) = 0;
+    virtual void write(Memory& target, const void* source, std::uint64_t size_bytes) = 0;
+    virtual void read(Memory& source, void* target, std::uint64_t size_bytes) = 0;
+    virtual void copy(Memory& source, Memory& target, std::uint64_t size_bytes) = 0;
+    virtual void fill(Memory& target, std::uint32_t pattern, std::uint64_t size_bytes) = 0;
+    virtual void finish() = 0;
+    /// Launches from here on count towards this stage of the timing table.
+    virtual void begin_stage(std::string_view stage) = 0;
+    [[nodiscard]] virtual std::vector<StageTime> take_timings() = 0;
+};
+
+class Device : public std::enable_shared_from_this<Device> {
+  public:
+    virtual ~Device() = default;
+    [[nodiscard]] virtual const DeviceInfo& info() const noexcept = 0;
+    [[nodiscard]] virtual const DeviceOptions& options() const noexcept = 0;
+    [[nodiscard]] virtual std::shared_ptr<Queue> make_queue() = 0;
+    virtual void trim() = 0;
+
+    /// Counts bytes against the budget; throws OutOfMemory, with nothing counted, if they do not fit.
+    void reserve(std::uint64_t size_bytes, std::string_view name);
+    void release(std::uint64_t size_bytes) noexcept { in_use_bytes_ -= size_bytes; }
+    [[nodiscard]] std::uint64_t in_use_bytes() const noexcept { return in_use_bytes_; }
+    [[nodiscard]] std::uint64_t peak_bytes() const noexcept { return peak_bytes_; }
+    void reset_peak() noexcept { peak_bytes_ = in_use_bytes_.load(); }
+
+  private:
+    std::atomic<std::uint64_t> in_use_bytes_{0};
+    std::atomic<std::uint64_t> peak_bytes_{0};
+};
+
+}  // namespace setka::backend

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+/// Which kernels are there? One list drives the enum, the names that each backend loads, and the timing table.
+#pragma once
+
+#include <cstddef>
+
+// Each name is an entry point in kernels_cl/ and in kernels_cu/.
+#define SETKA_KERNEL_LIST(X)                                                                               \
+    X(scan_reduce) X(scan_spine) X(scan_apply)                                                             \
+    X(sort_count) X(sort_scatter)                                                                          \
+    X(reduce_bounds) X(reduce_bounds_partial)                                                              \
+    X(grid_transform) X(grid_rows) X(grid_row_list) X(grid_count) X(grid_emit)                             \
+    X(grid_cells_clear) X(grid_cells_mark) X(grid_cells_close) X(grid_cells_search)                        \
+    X(trace_pack) X(trace_brute_closest) X(trace_brute_any)                                                \
+    X(trace_grid_closest_dda) X(trace_grid_closest_free) X(trace_grid_any_dda) X(trace_grid_any_free)      \
+    X(trace_grid_cost_dda) X(trace_grid_cost_free)                                                         \
+    X(shade_camera_rays) X(shade_surface) X(shade_shadow_rays) X(shade_light) X(shade_child_count)         \
+    X(shade_child_emit) X(shade_gather) X(shade_view) X(shade_resolve) X(shade_encode)
+
+namespace setka {
+
+enum class Kernel {
+#define SETKA_KERNEL_ENUM(name) name,
+    SETKA_KERNEL_LIST(SETKA_KERNEL_ENUM)
+#undef SETKA_KERNEL_ENUM
+};
+
+inline constexpr const char* kernel_names[] = {
+#define SETKA_KERNEL_NAME(name) #name,
+    SETKA_KERNEL_LIST(SETKA_KERNEL_NAME)
+#undef SETKA_KERNEL_NAME
+};
+
+inline constexpr std::size_t kernel_count = sizeof(kernel_names) / sizeof(kernel_names[0]);
+
+[[nodiscard]] constexpr const char* to_string(Kernel kernel) noexcept {
+    return kernel_names[static_cast<std::size_t>(kernel)];
+}
+
+}  // namespace setka

@@ -1,0 +1,31 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * Which words may a kernel body use? C99 as OpenCL C 1.2, CUDA C++ and host C++ all accept it, plus the words below, which
+ * the platform.h of each folder translates. This file is the list; it fails the build of a platform that lacks one.
+ *
+ *   SK_KERNEL                a kernel entry point returning void
+ *   SK_FUNCTION              a helper function, always inlined
+ *   SK_GLOBAL, SK_LOCAL      before the type of a pointer to global or local memory
+ *   SK_LOCAL_STORAGE         before an array in local memory, at the top of a kernel entry only
+ *   SK_RESTRICT              on a pointer that nothing else aliases
+ *   SK_BARRIER()             all work-items of the group; orders local memory; in uniform control flow only
+ *   sk_u32 sk_i32 sk_u64     integers
+ *   sk_global_id() sk_local_id() sk_group_id() sk_local_size()   as sk_u32
+ *   sk_float_bits(f) sk_bits_float(u)                            bit casts
+ *   sk_sqrt(f) sk_floor(f)                                       correctly rounded
+ *   sk_atomic_min(p, v) sk_atomic_add(p, v)                      on global sk_u32; order-free uses only
+ *
+ * Not allowed: fma, mad, min, max, clamp, rsqrt, dot, cross, normalize, pow, exp, log, sin, float3, doubles, sub-groups,
+ * float atomics, recursion, `return` before a barrier, a float to integer cast of a value that was not range-checked.
+ */
+#ifndef SETKA_DEVICE_DIALECT_H
+#define SETKA_DEVICE_DIALECT_H
+
+#if !defined(SK_KERNEL) || !defined(SK_FUNCTION) || !defined(SK_GLOBAL) || !defined(SK_LOCAL) || \
+    !defined(SK_LOCAL_STORAGE) || !defined(SK_RESTRICT) || !defined(SK_BARRIER)
+#error "include a platform.h before dialect.h"
+#endif
+
+#include "setka/layout.h"
+
+#endif
