@@ -68,6 +68,9 @@ typedef struct SetkaInstance {
 
 #define SETKA_INSTANCE_HAS_NORMALS 1u
 
+/** The mask bit that a device scene sets on instances of opaque materials, and on no other; queries may use it. */
+#define SETKA_MASK_OPAQUE 0x80000000u
+
 /**
  * The uniform grid's header. Cell (ix, iy, iz) has the number (iz * dims[1] + iy) * dims[0] + ix; its list is
  * references[offset .. offset + count), scene triangle numbers in ascending order; an empty cell has offset -1, count 0.

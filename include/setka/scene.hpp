@@ -62,7 +62,9 @@ struct Instance {
     std::uint32_t mesh = 0;
     Matrix34 transform;
     std::uint32_t material = 0;
-    std::uint32_t mask = 0xffffffffu;  ///< visible to a query whose mask shares a bit with this one
+    /// Visible to a query whose mask shares a bit with this one. The highest bit is SETKA_MASK_OPAQUE: it is set on the device
+    /// according to the material.
+    std::uint32_t mask = 0x7fffffffu;
 };
 
 struct PointLight {
@@ -132,6 +134,8 @@ class DeviceScene {
     [[nodiscard]] std::uint32_t triangle_count() const noexcept { return triangle_count_; }
     [[nodiscard]] std::uint32_t instance_count() const noexcept { return instance_count_; }
     [[nodiscard]] std::uint64_t size_bytes() const noexcept;
+    /// Bits that the masks of all instances share: a query with one of them need not look at instances.
+    [[nodiscard]] std::uint32_t common_mask() const noexcept { return common_mask_; }
 
     [[nodiscard]] const Buffer<float>& positions() const noexcept { return positions_; }        ///< 3 a vertex
     [[nodiscard]] const Buffer<std::uint32_t>& indices() const noexcept { return indices_; }    ///< 3 a triangle of a mesh
@@ -148,6 +152,7 @@ class DeviceScene {
   private:
     std::uint32_t triangle_count_ = 0;
     std::uint32_t instance_count_ = 0;
+    std::uint32_t common_mask_ = 0;
     Buffer<float> positions_;
     Buffer<std::uint32_t> indices_;
     Buffer<float> normals_;

@@ -18,8 +18,8 @@ enum class GridStep {
 
 struct TraceOptions {
     GridStep step = GridStep::Dda;
-    /// Instances are seen if their mask shares a bit with this one.
-    std::uint32_t mask = 0xffffffffu;
+    /// Instances are seen if their mask shares a bit with this one. SETKA_MASK_OPAQUE stands for opaque materials.
+    std::uint32_t mask = 0x7fffffffu;
 };
 
 /// Traces rays. A hit is a function of the scene and the ray: the smallest t in [tmin, tmax], then the lowest scene triangle.

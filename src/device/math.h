@@ -44,6 +44,8 @@ SK_FUNCTION sk_vec3 sk_unit(sk_vec3 a) {
     return length > 0.0f && sk_is_finite(length) ? sk_make3(a.x / length, a.y / length, a.z / length) : a;
 }
 SK_FUNCTION sk_vec3 sk_load3(SK_GLOBAL const float* p) { return sk_make3(p[0], p[1], p[2]); }
+/** The largest absolute component. */
+SK_FUNCTION float sk_largest(sk_vec3 a) { return sk_max(sk_max(sk_abs(a.x), sk_abs(a.y)), sk_abs(a.z)); }
 /** Component 0, 1 or 2. */
 SK_FUNCTION float sk_component(sk_vec3 a, sk_u32 axis) { return axis == 0u ? a.x : axis == 1u ? a.y : a.z; }
 

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: MIT
+#include "accel/world_geometry.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include "algo/reduce.hpp"
+#include "core/launch.hpp"
+#include "setka/error.hpp"
+
+namespace setka {
+
+WorldGeometry transform_scene(Queue& queue, const DeviceScene& scene) {
+    WorldGeometry geometry;
+    geometry.triangle_count = scene.triangle_count();
+    geometry.instance_count = scene.instance_count();
+    geometry.instances = scene.instances();
+    geometry.instance_starts = scene.instance_starts();
+    geometry.common_mask = scene.common_mask();
+
+    queue.impl().begin_stage("transform");
+    geometry.triangles = queue.make_buffer<float>(std::size_t(geometry.triangle_count) * 9, "world triangles");
+    constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+    const auto first_bad = queue.make_buffer<std::uint32_t>(1, "first non-finite triangle");
+    queue.impl().fill(*first_bad.memory(), none, sizeof(none));
+    launch_items(queue, Kernel::grid_transform, geometry.triangle_count, geometry.instance_count, scene.positions(),
+                 scene.indices(), scene.instances(), scene.instance_starts(), geometry.triangles, first_bad);
+
+    queue.impl().begin_stage("bounds");
+    geometry.bounds = reduce_bounds(queue, geometry.triangles, geometry.triangle_count);
+    if (const std::uint32_t bad = queue.download(first_bad).front(); bad != none)
+        throw Error(ErrorCategory::InvalidData,
+                    "scene triangle " + std::to_string(bad) +
+                        " has a vertex that is not finite after its instance's transform; finite vertices are needed");
+    constexpr float largest = 1e30f;
+    if (!(extent_of(geometry.bounds) <= largest))
+        throw Error(ErrorCategory::InvalidData, "the scene's extent is " + std::to_string(extent_of(geometry.bounds)) +
+                                                    "; up to 1e30 can be calculated with in float");
+    return geometry;
+}
+
+float extent_of(const Bounds& bounds) noexcept {
+    return std::max({bounds.upper[0] - bounds.lower[0], bounds.upper[1] - bounds.lower[1],
+                     bounds.upper[2] - bounds.lower[2]});
+}
+
+sk_trace_params trace_params(const WorldGeometry& geometry, std::uint32_t mask) noexcept {
+    sk_trace_params params{};
+    for (int axis = 0; axis < 3; ++axis) {
+        params.lower[axis] = geometry.bounds.lower[axis];
+        params.size[axis] = geometry.bounds.upper[axis] - geometry.bounds.lower[axis];
+    }
+    params.extent = extent_of(geometry.bounds);
+    params.pad = params.extent * 0x1p-16f;
+    params.mask = mask;
+    params.filters = (geometry.common_mask & mask) == 0;
+    params.instance_count = geometry.instance_count;
+    params.triangle_count = geometry.triangle_count;
+    return params;
+}
+
+std::vector<Section> geometry_sections(const WorldGeometry& geometry) {
+    return {{"triangles", geometry.triangles.size_bytes()},
+            {"instance starts", geometry.instance_starts.size_bytes()},
+            {"instances", geometry.instances.size_bytes()}};
+}
+
+}  // namespace setka

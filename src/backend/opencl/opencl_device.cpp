@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+#include "backend/opencl/opencl_device.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+
+#include "backend/opencl/opencl_queue.hpp"
+#include "backend/program_source.hpp"
+#include "core/settings.hpp"
+
+namespace setka::backend {
+
+std::string opencl_code_name(cl_int code) {
+    switch (code) {
+#define SETKA_CODE(name) \
+    case name: return #name
+        SETKA_CODE(CL_DEVICE_NOT_FOUND);
+        SETKA_CODE(CL_DEVICE_NOT_AVAILABLE);
+        SETKA_CODE(CL_COMPILER_NOT_AVAILABLE);
+        SETKA_CODE(CL_MEM_OBJECT_ALLOCATION_FAILURE);
+        SETKA_CODE(CL_OUT_OF_RESOURCES);
+        SETKA_CODE(CL_OUT_OF_HOST_MEMORY);
+        SETKA_CODE(CL_MEM_COPY_OVERLAP);
+        SETKA_CODE(CL_BUILD_PROGRAM_FAILURE);
+        SETKA_CODE(CL_MAP_FAILURE);
+        SETKA_CODE(CL_MISALIGNED_SUB_BUFFER_OFFSET);
+        SETKA_CODE(CL_EXEC_STATUS_ERROR_FOR_EVENTS_IN_WAIT_LIST);
+        SETKA_CODE(CL_INVALID_VALUE);
+        SETKA_CODE(CL_INVALID_DEVICE);
+        SETKA_CODE(CL_INVALID_CONTEXT);
+        SETKA_CODE(CL_INVALID_QUEUE_PROPERTIES);
+        SETKA_CODE(CL_INVALID_COMMAND_QUEUE);
+        SETKA_CODE(CL_INVALID_HOST_PTR);
+        SETKA_CODE(CL_INVALID_MEM_OBJECT);
+        SETKA_CODE(CL_INVALID_BUILD_OPTIONS);
+        SETKA_CODE(CL_INVALID_PROGRAM);
+        SETKA_CODE(CL_INVALID_PROGRAM_EXECUTABLE);
+        SETKA_CODE(CL_INVALID_KERNEL_NAME);
+        SETKA_CODE(CL_INVALID_KERNEL);
+        SETKA_CODE(CL_INVALID_ARG_INDEX);
+        SETKA_CODE(CL_INVALID_ARG_VALUE);
+        SETKA_CODE(CL_INVALID_ARG_SIZE);
+        SETKA_CODE(CL_INVALID_KERNEL_ARGS);
+        SETKA_CODE(CL_INVALID_WORK_GROUP_SIZE);
+        SETKA_CODE(CL_INVALID_WORK_ITEM_SIZE);
+        SETKA_CODE(CL_INVALID_EVENT);
+        SETKA_CODE(CL_INVALID_OPERATION);
+        SETKA_CODE(CL_INVALID_BUFFER_SIZE);
+        SETKA_CODE(CL_INVALID_GLOBAL_WORK_SIZE);
+#undef SETKA_CODE
+        case -1001: return "CL_PLATFORM_NOT_FOUND_KHR";
+        default: return "OpenCL error " + std::to_string(code);
+    }
+}
+
+Error opencl_error(const std::string& what, const cl::Error& error) {
+    const bool memory = error.err() == CL_MEM_OBJECT_ALLOCATION_FAILURE || error.err() == CL_OUT_OF_RESOURCES ||
+                        error.err() == CL_OUT_OF_HOST_MEMORY || error.err() == CL_INVALID_BUFFER_SIZE;
+    return Error(memory ? ErrorCategory::OutOfMemory : ErrorCategory::DeviceFailed,
+                 what + " failed: " + (error.what() ? error.what() : "OpenCL call") + " returned " +
+                     opencl_code_name(error.err()));
+}
+
+OpenClDevice::OpenClDevice(cl::Device device, DeviceInfo info, const DeviceOptions& options)
+    : device_(std::move(device)), info_(std::move(info)) {
+    guarded("opening " + info_.id, [&] { context_ = cl::Context(device_); });
+    build_program();
+    resolve_options(options);
+}
+
+void OpenClDevice::build_program() {
+    const auto start = std::chrono::steady_clock::now();
+    // Contraction is switched off in the source; no option may ever relax the arithmetic.
+    std::string build_options = "-cl-std=CL1.2";
+    if (info_.correctly_rounded_divide_sqrt) build_options += " -cl-fp32-correctly-rounded-divide-sqrt";
+    const auto build_log = [&]() -> std::string {
+        try {
+            return program_.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device_);
+        } catch (const cl::Error&) {
+            return "(the driver gave no log)";
+        }
+    };
+    try {
+        program_ = cl::Program(context_, assemble_program("kernels_cl/", ".cl"));
+        program_.build(std::vector<cl::Device>{device_}, build_options.c_str());
+    } catch (const cl::Error& error) {
+        const std::string log = program_() ? build_log() : "";
+        throw Error(ErrorCategory::BuildFailed, "compiling the kernels for " + info_.name + " failed: " +
+                                                    opencl_code_name(error.err()) + "\n" + log);
+    }
+    if (settings().log_build) {
+        const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
+        log_line("built the kernels for " + info_.name + " in " + std::to_string(time.count()) + " ms\n" + build_log());
+    }
+}
+
+void OpenClDevice::resolve_options(const DeviceOptions& options) {
+    options_ = options;
+    // Drivers may allow a kernel less than the device's maximum.
+    std::uint32_t largest = std::min<std::uint32_t>(256, info_.max_work_group_size);
+    guarded("asking for the kernels' limits", [&] {
+        for (const char* name : kernel_names)
+            largest = std::min<std::uint32_t>(
+                largest, static_cast<std::uint32_t>(
+                             cl::Kernel(program_, name).getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device_)));
+    });
+    largest = std::bit_floor(std::max(largest, 1u));
+    if (options.work_group_size != 0 &&
+        (!std::has_single_bit(options.work_group_size) || options.work_group_size > largest))
+        throw Error(ErrorCategory::InvalidArgument,
+                    "work_group_size is " + std::to_string(options.work_group_size) + "; " + info_.name +
+                        " accepts powers of two up to " + std::to_string(largest));
+    const bool is_cpu = info_.type == DeviceType::Cpu;
+    if (options_.work_group_size == 0) options_.work_group_size = std::min(largest, is_cpu ? 64u : 128u);
+    if (options_.primitives == PrimitiveShape::Auto)
+        options_.primitives = is_cpu ? PrimitiveShape::Serial : PrimitiveShape::Group;
+    if (options_.memory_budget_bytes == 0) {
+        std::uint64_t memory = info_.memory_bytes;
+        // A CPU driver's figure may be a fraction of the machine's memory, taken at load time.
+        if (is_cpu)
+            memory = std::max(memory, std::uint64_t(sysconf(_SC_PHYS_PAGES)) * std::uint64_t(sysconf(_SC_PAGESIZE)));
+        options_.memory_budget_bytes = memory / 4 * 3;
+    }
+}
+
+std::shared_ptr<Queue> OpenClDevice::make_queue() {
+    auto pool = std::make_shared<OpenClPool>();
+    auto queue =
+        std::make_shared<OpenClQueue>(std::static_pointer_cast<OpenClDevice>(shared_from_this()), pool);
+    const std::scoped_lock lock(pools_mutex_);
+    std::erase_if(pools_, [](const auto& weak) { return weak.expired(); });
+    pools_.push_back(pool);
+    return queue;
+}
+
+void OpenClDevice::trim() {
+    const std::scoped_lock lock(pools_mutex_);
+    for (const auto& weak : pools_)
+        if (const auto pool = weak.lock()) pool->clear();
+}
+
+}  // namespace setka::backend

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+/// What does a device mean in OpenCL? A context of one device with the compiled program of all kernels.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "backend/device.hpp"
+#include "backend/opencl/opencl.hpp"
+
+namespace setka::backend {
+
+class OpenClPool;
+
+class OpenClDevice final : public Device {
+  public:
+    /// Compiles every kernel. Throws BuildFailed with the driver's log, InvalidArgument for options the device cannot meet.
+    OpenClDevice(cl::Device device, DeviceInfo info, const DeviceOptions& options);
+
+    [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
+    [[nodiscard]] const DeviceOptions& options() const noexcept override { return options_; }
+    [[nodiscard]] std::shared_ptr<Queue> make_queue() override;
+    void trim() override;
+
+    [[nodiscard]] const cl::Device& device() const noexcept { return device_; }
+    [[nodiscard]] const cl::Context& context() const noexcept { return context_; }
+    [[nodiscard]] const cl::Program& program() const noexcept { return program_; }
+
+  private:
+    void build_program();
+    void resolve_options(const DeviceOptions& options);
+
+    cl::Device device_;
+    DeviceInfo info_;
+    DeviceOptions options_;
+    cl::Context context_;
+    cl::Program program_;
+    std::mutex pools_mutex_;
+    std::vector<std::weak_ptr<OpenClPool>> pools_;
+};
+
+}  // namespace setka::backend

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+/// What does a queue mean in OpenCL? An in-order command queue with profiling, its kernel objects and its pool of buffers.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "backend/opencl/opencl_device.hpp"
+
+namespace setka::backend {
+
+/// Buffers that were given back, by size. Those of one queue are reused in that queue's order only, so no command can still
+/// be using one when the next gets it.
+class OpenClPool {
+  public:
+    [[nodiscard]] cl::Buffer take(std::uint64_t size_bytes);  ///< null if there is none of this size
+    void give(std::uint64_t size_bytes, cl::Buffer buffer) noexcept;
+    void clear() noexcept;
+    [[nodiscard]] std::uint64_t cached_bytes() const noexcept { return cached_bytes_; }
+
+  private:
+    std::mutex mutex_;
+    std::multimap<std::uint64_t, cl::Buffer> free_;
+    std::uint64_t cached_bytes_ = 0;
+};
+
+class OpenClQueue final : public Queue {
+  public:
+    OpenClQueue(std::shared_ptr<OpenClDevice> device, std::shared_ptr<OpenClPool> pool);
+
+    [[nodiscard]] std::shared_ptr<Memory> allocate(std::uint64_t size_bytes, std::string_view name) override;
+    [[nodiscard]] std::shared_ptr<Memory> wrap_host(void* data, std::uint64_t size_bytes, bool read_only,
+                                                    std::string_view name) override;
+    void launch(Kernel kernel, std::uint32_t group_count, std::uint32_t group_size,
+                const Arguments& arguments) override;
+    void write(Memory& target, const void* source, std::uint64_t size_bytes) override;
+    void read(Memory& source, void* target, std::uint64_t size_bytes) override;
+    void copy(Memory& source, Memory& target, std::uint64_t size_bytes) override;
+    void fill(Memory& target, std::uint32_t pattern, std::uint64_t size_bytes) override;
+    void finish() override;
+    void begin_stage(std::string_view stage) override;
+    [[nodiscard]] std::vector<StageTime> take_timings() override;
+
+  private:
+    void collect_events();
+
+    std::shared_ptr<OpenClDevice> device_;
+    std::shared_ptr<OpenClPool> pool_;
+    cl::CommandQueue queue_;
+    std::vector<cl::Kernel> kernels_;
+    std::vector<StageTime> stages_;
+    std::size_t stage_ = 0;
+    std::vector<std::pair<std::size_t, cl::Event>> events_;
+};
+
+}  // namespace setka::backend

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+/// How long did it take? See the header.
+#include "cli/measure.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <numeric>
+
+namespace setka::cli {
+
+Measurement measure(Queue& queue, std::uint32_t repeats, const std::function<void()>& work) {
+    if (repeats > 1) work();
+    queue.finish();
+    (void)queue.take_timings();  // what was measured before is not part of this
+
+    std::vector<double> wall_ms, device_ms;
+    std::vector<std::vector<StageTime>> runs;
+    for (std::uint32_t i = 0; i < repeats; ++i) {
+        const Stopwatch watch;
+        work();
+        queue.finish();
+        wall_ms.push_back(watch.elapsed_ms());
+        runs.push_back(queue.take_timings());
+        const auto add = [](double sum, const StageTime& stage) { return sum + stage.time_ms; };
+        device_ms.push_back(std::accumulate(runs.back().begin(), runs.back().end(), 0.0, add));
+    }
+
+    Measurement result{repeats, median(wall_ms), median(device_ms), runs.front()};
+    for (StageTime& stage : result.stages) {
+        std::vector<double> times_ms;
+        for (const auto& run : runs)
+            for (const StageTime& other : run)
+                if (other.stage == stage.stage) times_ms.push_back(other.time_ms);
+        stage.time_ms = median(times_ms);
+    }
+    return result;
+}
+
+double median(std::vector<double> values) {
+    if (values.empty()) return 0;
+    std::ranges::sort(values);
+    const std::size_t middle = values.size() / 2;
+    return values.size() % 2 != 0 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
+}
+
+std::string grouped(std::uint64_t number) {
+    std::string text = std::to_string(number);
+    for (std::size_t at = text.size(); at > 3;) text.insert(at -= 3, ",");
+    return text;
+}
+
+std::string as_bytes(std::uint64_t size_bytes) {
+    constexpr const char* units[] = {"bytes", "KiB", "MiB", "GiB", "TiB"};
+    auto amount = static_cast<double>(size_bytes);
+    std::size_t unit = 0;
+    for (; amount >= 1024 && unit + 1 < std::size(units); ++unit) amount /= 1024;
+    return unit == 0 ? fmt::format("{} bytes", size_bytes) : fmt::format("{:.1f} {}", amount, units[unit]);
+}
+
+}  // namespace setka::cli

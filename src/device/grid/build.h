@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * How do vertices become the grid's tables? One function a stage of Maltsev & Mikhaylyuk (2012, section 2), each the body of one
+ * kernel. Work is spread over rows of cells, not over triangles: a triangle as large as the scene has many rows, and none of
+ * them is longer than the grid is wide.
+ */
+#ifndef SETKA_DEVICE_GRID_BUILD_H
+#define SETKA_DEVICE_GRID_BUILD_H
+
+#include "device/grid/cells.h"
+
+/** Stage 1: world vertices of triangle i. first_bad becomes the lowest triangle that is not finite. */
+SK_FUNCTION void sk_grid_transform(sk_u32 i, sk_u32 instance_count, SK_GLOBAL const float* positions,
+                                   SK_GLOBAL const sk_u32* indices, SK_GLOBAL const SetkaInstance* instances,
+                                   SK_GLOBAL const sk_u32* instance_starts, SK_GLOBAL float* triangles,
+                                   SK_GLOBAL sk_u32* first_bad) {
+    const sk_u32 number = sk_find_segment(instance_starts, instance_count, i);
+    SK_GLOBAL const SetkaInstance* instance = instances + number;
+    SK_GLOBAL const sk_u32* index =
+        indices + (size_t)(instance->first_index + (i - instance->first_triangle)) * 3u;
+    SK_GLOBAL float* triangle = triangles + (size_t)i * 9u;
+    int finite = 1;
+    for (sk_u32 k = 0u; k < 3u; ++k) {
+        const sk_vec3 p = sk_load3(positions + (size_t)(instance->first_vertex + index[k]) * 3u);
+        const sk_vec3 q = sk_transform_point(instance->matrix, p);
+        finite = finite && sk_is_finite(q.x) && sk_is_finite(q.y) && sk_is_finite(q.z);
+        triangle[3u * k] = q.x;
+        triangle[3u * k + 1u] = q.y;
+        triangle[3u * k + 2u] = q.z;
+    }
+    if (!finite) sk_atomic_min(first_bad, i);
+}
+
+/** Stage 4, first half: rows of triangle i. */
+SK_FUNCTION void sk_grid_rows(sk_u32 i, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
+                              SK_GLOBAL sk_u32* rows) {
+    const sk_cell_triangle t = sk_load_cell_triangle(grid, triangles + (size_t)i * 9u);
+    rows[i] = sk_last_row(grid, t) - sk_first_row(grid, t) + 1u;
+}
+
+/** row_triangles[r] = the triangle that row r belongs to. */
+SK_FUNCTION void sk_grid_row_list(sk_u32 i, SK_GLOBAL const sk_u32* row_starts, SK_GLOBAL sk_u32* row_triangles) {
+    const sk_u32 end = row_starts[i + 1u];
+    for (sk_u32 r = row_starts[i]; r < end; ++r) row_triangles[r] = i;
+}
+
+/** Stage 4, second half: cells in row r. */
+SK_FUNCTION void sk_grid_count(sk_u32 r, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
+                               SK_GLOBAL const sk_u32* row_triangles, SK_GLOBAL const sk_u32* row_starts,
+                               SK_GLOBAL sk_u32* counts) {
+    const sk_u32 i = row_triangles[r];
+    const sk_cell_triangle t = sk_load_cell_triangle(grid, triangles + (size_t)i * 9u);
+    const sk_u32 j = sk_first_row(grid, t) + (r - row_starts[i]);
+    counts[r] = sk_visit_row(grid, t, j, 0, 0u, i, (SK_GLOBAL sk_u32*)0, (SK_GLOBAL sk_u32*)0);
+}
+
+/** Stage 5: the pairs of row r. */
+SK_FUNCTION void sk_grid_emit(sk_u32 r, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
+                              SK_GLOBAL const sk_u32* row_triangles, SK_GLOBAL const sk_u32* row_starts,
+                              SK_GLOBAL const sk_u32* row_offsets, SK_GLOBAL sk_u32* cells,
+                              SK_GLOBAL sk_u32* references) {
+    const sk_u32 i = row_triangles[r];
+    const sk_cell_triangle t = sk_load_cell_triangle(grid, triangles + (size_t)i * 9u);
+    const sk_u32 j = sk_first_row(grid, t) + (r - row_starts[i]);
+    sk_visit_row(grid, t, j, 1, row_offsets[r], i, cells, references);
+}
+
+/** Stage 7 by run boundaries, first of three: every cell is empty. */
+SK_FUNCTION void sk_grid_cells_clear(sk_u32 c, SK_GLOBAL sk_i32* offsets, SK_GLOBAL sk_u32* counts) {
+    offsets[c] = -1;
+    counts[c] = 0u;
+}
+
+/** Second: the first pair of a run of equal cells writes where it starts, the last where it ends (into counts). */
+SK_FUNCTION void sk_grid_cells_mark(sk_u32 p, sk_u32 n, SK_GLOBAL const sk_u32* cells, SK_GLOBAL sk_i32* offsets,
+                                    SK_GLOBAL sk_u32* counts) {
+    const sk_u32 cell = cells[p];
+    if (p == 0u || cells[p - 1u] != cell) offsets[cell] = (sk_i32)p;
+    if (p + 1u == n || cells[p + 1u] != cell) counts[cell] = p + 1u;
+}
+
+/** Third: ends become counts. */
+SK_FUNCTION void sk_grid_cells_close(sk_u32 c, SK_GLOBAL const sk_i32* offsets, SK_GLOBAL sk_u32* counts) {
+    if (offsets[c] >= 0) counts[c] -= (sk_u32)offsets[c];
+}
+
+/** The first of n ascending cells that is not below `cell`. */
+SK_FUNCTION sk_u32 sk_lower_bound(SK_GLOBAL const sk_u32* cells, sk_u32 n, sk_u32 cell) {
+    sk_u32 low = 0u, high = n;
+    while (low < high) {
+        const sk_u32 middle = low + (high - low) / 2u;
+        if (cells[middle] < cell)
+            low = middle + 1u;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/** Stage 7 as in the paper: cell c searches for its first pair and for the first pair of the next cell. */
+SK_FUNCTION void sk_grid_cells_search(sk_u32 c, sk_u32 n, SK_GLOBAL const sk_u32* cells, SK_GLOBAL sk_i32* offsets,
+                                      SK_GLOBAL sk_u32* counts) {
+    const sk_u32 first = sk_lower_bound(cells, n, c);
+    const sk_u32 count = sk_lower_bound(cells, n, c + 1u) - first;
+    offsets[c] = count == 0u ? -1 : (sk_i32)first;
+    counts[c] = count;
+}
+
+#endif

@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * How do rays make a picture? Camera rays from pixels, pixels from the rays' colours or measures, and 8-bit
+ * sRGB from linear light.
+ */
+#ifndef SETKA_DEVICE_SHADE_PICTURE_H
+#define SETKA_DEVICE_SHADE_PICTURE_H
+
+#include "device/shade/shade.h"
+
+/** Ray i of the pixels from `first_pixel` on: a pixel's samples follow each other, on a regular grid row by
+ * row. */
+SK_FUNCTION void sk_camera_ray(sk_u32 i, SkCamera camera, sk_u32 first_pixel, SK_GLOBAL SetkaRay* rays) {
+    const sk_u32 axis = camera.samples_per_axis, per_pixel = axis * axis;
+    const sk_u32 pixel = first_pixel + i / per_pixel, sample = i % per_pixel;
+    /* Sample columns and rows of the whole picture: at most 2^18, exact as floats. */
+    const float column = (float)((pixel % camera.width) * axis + sample % axis);
+    const float row = (float)((pixel / camera.width) * axis + sample / axis);
+    const float x = (column + 0.5f) * camera.step_x - 1.0f;
+    const float y = 1.0f - (row + 0.5f) * camera.step_y;
+    const sk_vec3 direction = sk_unit(sk_make3(camera.forward[0] + (camera.right[0] * x + camera.up[0] * y),
+                                               camera.forward[1] + (camera.right[1] * x + camera.up[1] * y),
+                                               camera.forward[2] + (camera.right[2] * x + camera.up[2] * y)));
+    sk_store3(rays[i].origin, sk_make3(camera.eye[0], camera.eye[1], camera.eye[2]));
+    sk_store3(rays[i].direction, direction);
+    rays[i].tmin = 0.0f;
+    rays[i].tmax = sk_bits_float(0x7f800000u);
+}
+
+/** A shading normal as a colour; black where there is no surface. */
+SK_FUNCTION sk_vec3 sk_normal_colour(SkSurfacePoint point) {
+    if (point.material == SETKA_NO_HIT) return sk_make3(0.0f, 0.0f, 0.0f);
+    return sk_make3((point.normal[0] + 1.0f) * 0.5f, (point.normal[1] + 1.0f) * 0.5f,
+                    (point.normal[2] + 1.0f) * 0.5f);
+}
+
+/** The mean t of the pixel's samples that hit something; -1 if none does. */
+SK_FUNCTION float sk_pixel_depth(sk_u32 pixel, sk_u32 samples, SK_GLOBAL const SetkaHit* hits) {
+    float sum = 0.0f;
+    sk_u32 count = 0u, k;
+    for (k = 0u; k < samples; ++k) {
+        const sk_u32 at = pixel * samples + k;
+        if (hits[at].instance != SETKA_NO_HIT) {
+            sum = sum + hits[at].t;
+            ++count;
+        }
+    }
+    return count ? sum / (float)count : -1.0f;
+}
+
+/** The mean number of steps, or of tests, of the pixel's samples. */
+SK_FUNCTION float sk_pixel_cost(sk_u32 pixel, sk_u32 samples, sk_u32 tests,
+                                SK_GLOBAL const SetkaTraceCost* costs) {
+    float sum = 0.0f;
+    sk_u32 k;
+    for (k = 0u; k < samples; ++k) {
+        const sk_u32 at = pixel * samples + k;
+        sum = sum + (float)(tests ? costs[at].tests : costs[at].steps);
+    }
+    return sum / (float)samples;
+}
+
+/** The colour of value / maximum on a ramp of `knots` colours joined by straight lines; black below 0. */
+SK_FUNCTION sk_vec3 sk_ramp_colour(float value, float maximum, SK_GLOBAL const float* ramp, sk_u32 knots) {
+    const float share = maximum > 0.0f ? sk_min(value / maximum, 1.0f) : 0.0f;
+    if (!(value >= 0.0f)) return sk_make3(0.0f, 0.0f, 0.0f);
+    {
+        const float place = share * (float)(knots - 1u);
+        const sk_u32 knot = sk_min_u32((sk_u32)place, knots - 2u);
+        const float part = place - (float)knot;
+        return sk_add(sk_scale(sk_load3(ramp + 3u * knot), 1.0f - part),
+                      sk_scale(sk_load3(ramp + 3u * knot + 3u), part));
+    }
+}
+
+/** The mean colour of a pixel's samples, summed in their order. */
+SK_FUNCTION sk_vec3 sk_pixel_colour(sk_u32 pixel, sk_u32 samples, SK_GLOBAL const float* colours) {
+    sk_vec3 sum = sk_make3(0.0f, 0.0f, 0.0f);
+    const float count = (float)samples;
+    sk_u32 k;
+    for (k = 0u; k < samples; ++k) sum = sk_add(sum, sk_load3(colours + 3u * (pixel * samples + k)));
+    return sk_make3(sum.x / count, sum.y / count, sum.z / count);
+}
+
+/** The 8-bit code of linear light: how many of the 255 ascending thresholds it reaches. A NaN reaches none.
+ */
+SK_FUNCTION sk_u32 sk_encode(float linear, SK_GLOBAL const float* thresholds) {
+    sk_u32 code = 0u, step;
+    for (step = 128u; step > 0u; step >>= 1)
+        if (thresholds[code + step - 1u] <= linear) code += step;
+    return code;
+}
+
+#endif

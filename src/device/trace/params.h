@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: MIT */
+/** What does a trace kernel need to know of the scene? The box that rays are clipped to, and counts. Shared with the host. */
+#ifndef SETKA_DEVICE_TRACE_PARAMS_H
+#define SETKA_DEVICE_TRACE_PARAMS_H
+
+#include "setka/layout.h"
+
+typedef struct sk_trace_params {
+    float lower[3];
+    float size[3];            /* upper - lower */
+    float extent;             /* the largest size */
+    float pad;                /* extent * 2^-16 */
+    setka_u32 mask;           /* of the query */
+    setka_u32 filters;        /* 0: the mask lets every instance through */
+    setka_u32 instance_count;
+    setka_u32 triangle_count;
+} sk_trace_params;
+
+#endif

@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * What does a ray look like to the kernels? The working ray: direction scaled by a power of two, origin brought near the scene,
+ * interval clipped to the scene's box, constants of the triangle test. Every structure starts from it, so that what a ray hits
+ * does not depend on the structure. src/README.md specifies every operation.
+ */
+#ifndef SETKA_DEVICE_TRACE_RAY_H
+#define SETKA_DEVICE_TRACE_RAY_H
+
+#include "device/math.h"
+#include "device/trace/params.h"
+
+/** Below this a component of a working direction counts as 0. */
+#define SK_PARALLEL 0x1p-100f
+
+typedef struct sk_working_ray {
+    sk_vec3 o, d;
+    float w0, w1;              /* where the ray is in the scene's box */
+    float pre, scale, shift;   /* t = ((w + shift) * pre) * scale */
+    float tmin, tmax;          /* the user's */
+    sk_u32 kx, ky, kz;         /* axes: kz is the direction's largest */
+    float ox, oy, oz;          /* the origin along them */
+    float sx, sy, sz;          /* shear */
+    int valid;                 /* 0: the ray misses everything */
+} sk_working_ray;
+
+typedef struct sk_span {
+    float w0, w1;
+    int meets;
+} sk_span;
+
+/** The user's parameter of a working one. */
+SK_FUNCTION float sk_user_t(sk_working_ray r, float w) { return ((w + r.shift) * r.pre) * r.scale; }
+
+/** Narrows `span` to where q + w * d lies in [-pad, size + pad]. */
+SK_FUNCTION sk_span sk_clip_axis(sk_span span, float q, float d, float size, float pad) {
+    const float top = size + pad;
+    sk_span r = span;
+    if (sk_abs(d) < SK_PARALLEL) {
+        if (!(-pad <= q && q <= top)) r.meets = 0;
+    } else {
+        const float inverse = 1.0f / d;
+        const float a = (-pad - q) * inverse, b = (top - q) * inverse;
+        const float low = b < a ? b : a, high = b < a ? a : b;
+        r.w0 = sk_max(r.w0, low);
+        r.w1 = sk_min(r.w1, high);
+    }
+    return r;
+}
+
+SK_FUNCTION sk_span sk_clip_box(sk_trace_params params, sk_vec3 o, sk_vec3 d) {
+    sk_span r;
+    r.w0 = -3e38f;
+    r.w1 = 3e38f;
+    r.meets = 1;
+    r = sk_clip_axis(r, o.x - params.lower[0], d.x, params.size[0], params.pad);
+    r = sk_clip_axis(r, o.y - params.lower[1], d.y, params.size[1], params.pad);
+    r = sk_clip_axis(r, o.z - params.lower[2], d.z, params.size[2], params.pad);
+    r.w0 = r.w0 - sk_abs(r.w0) * 0x1p-20f;
+    r.w1 = r.w1 + sk_abs(r.w1) * 0x1p-20f;
+    if (!(r.w0 <= r.w1)) r.meets = 0;
+    return r;
+}
+
+SK_FUNCTION sk_working_ray sk_prepare_ray(sk_trace_params params, SetkaRay ray) {
+    sk_working_ray r;
+    sk_span span;
+    sk_vec3 o = sk_make3(ray.origin[0], ray.origin[1], ray.origin[2]);
+    sk_vec3 d = sk_make3(ray.direction[0], ray.direction[1], ray.direction[2]);
+    const float largest = sk_max(sk_max(sk_abs(d.x), sk_abs(d.y)), sk_abs(d.z));
+    r.valid = sk_is_finite(o.x) && sk_is_finite(o.y) && sk_is_finite(o.z) && sk_is_finite(d.x) && sk_is_finite(d.y) &&
+              sk_is_finite(d.z) && largest > 0.0f && ray.tmin <= ray.tmax;
+    r.tmin = ray.tmin;
+    r.tmax = ray.tmax;
+    r.shift = 0.0f;
+    /* Two exact steps, because 1 / 2^e itself may not be a float. */
+    r.pre = largest < 0x1p-64f ? 0x1p96f : largest > 0x1p64f ? 0x1p-96f : 1.0f;
+    r.scale = sk_bits_float((254u << 23) - (sk_float_bits(largest * r.pre) & 0x7f800000u));
+    d = sk_scale(sk_scale(d, r.pre), r.scale);
+
+    span = sk_clip_box(params, o, d);
+    if (span.w0 > params.extent || span.w1 < -params.extent) {
+        r.shift = span.w0 > params.extent ? span.w0 : span.w1;
+        o = sk_add(o, sk_scale(d, r.shift));
+        if (span.meets) span = sk_clip_box(params, o, d);
+    }
+    r.valid = r.valid && span.meets;
+    r.w0 = span.w0;
+    r.w1 = span.w1;
+    r.o = o;
+    r.d = d;
+
+    const float ax = sk_abs(d.x), ay = sk_abs(d.y), az = sk_abs(d.z);
+    r.kz = ax >= ay && ax >= az ? 0u : ay >= az ? 1u : 2u;
+    r.kx = r.kz == 2u ? 0u : r.kz + 1u;
+    r.ky = r.kx == 2u ? 0u : r.kx + 1u;
+    r.ox = sk_component(o, r.kx);
+    r.oy = sk_component(o, r.ky);
+    r.oz = sk_component(o, r.kz);
+    const float dz = sk_component(d, r.kz);
+    r.sx = sk_component(d, r.kx) / dz;
+    r.sy = sk_component(d, r.ky) / dz;
+    r.sz = 1.0f / dz;
+    return r;
+}
+
+#endif

@@ -1,0 +1,140 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * Does a ray hit a triangle, and where? The shear test of Woop, Benthin & Wald (2013) with edge functions that are recomputed
+ * accurately for the few triangles that pass, so that the sign is exact and t is that of a point within a few roundings of the
+ * triangle, however thin it is. src/README.md specifies every operation.
+ */
+#ifndef SETKA_DEVICE_TRACE_TRIANGLE_H
+#define SETKA_DEVICE_TRACE_TRIANGLE_H
+
+#include "device/trace/ray.h"
+
+/** The best hit so far, in working parameters. */
+typedef struct sk_best {
+    float w, u, v;
+    sk_u32 triangle; /* SETKA_NO_HIT: none yet */
+} sk_best;
+
+/** A value and what rounding took from it. */
+typedef struct sk_pair {
+    float value, error;
+} sk_pair;
+
+SK_FUNCTION sk_pair sk_two_product(float a, float b) {
+    sk_pair r;
+    const float ca = 4097.0f * a, cb = 4097.0f * b;
+    const float ah = ca - (ca - a), bh = cb - (cb - b);
+    const float al = a - ah, bl = b - bh;
+    r.value = a * b;
+    r.error = (((ah * bh - r.value) + ah * bl) + al * bh) + al * bl;
+    return r;
+}
+
+SK_FUNCTION sk_pair sk_two_difference(float x, float y) {
+    sk_pair r;
+    r.value = x - y;
+    const float t = r.value - x;
+    r.error = (x - (r.value - t)) - (y + t);
+    return r;
+}
+
+SK_FUNCTION sk_pair sk_two_sum(float x, float y) {
+    sk_pair r;
+    r.value = x + y;
+    const float t = r.value - x;
+    r.error = (x - (r.value - t)) + (y - t);
+    return r;
+}
+
+/** a * b - c * d with the exact sign and full relative precision. */
+SK_FUNCTION float sk_accurate_difference(float a, float b, float c, float d) {
+    const sk_pair p = sk_two_product(a, b), q = sk_two_product(c, d);
+    const sk_pair s = sk_two_difference(p.value, q.value);
+    const sk_pair f = sk_two_difference(p.error, q.error);
+    const sk_pair r = sk_two_sum(s.value, f.value);
+    return r.value + (r.error + (s.error + f.error));
+}
+
+/** One is below 0 and one above: the ray passes outside. */
+SK_FUNCTION int sk_mixed_signs(float u, float v, float w) {
+    return (u < 0.0f || v < 0.0f || w < 0.0f) && (u > 0.0f || v > 0.0f || w > 0.0f);
+}
+
+/**
+ * The best of `best` and the hit of triangle `number`, whose vertex k has the components vertices[3 * stride * k],
+ * vertices[3 * stride * k + stride], …: stride 1 for packed triangles, more where triangles lie side by side.
+ */
+SK_FUNCTION sk_best sk_test_triangle(sk_working_ray ray, SK_GLOBAL const float* vertices, sk_u32 stride, sk_u32 number,
+                                     sk_best best) {
+    const sk_u32 kx = ray.kx * stride, ky = ray.ky * stride, kz = ray.kz * stride, next = 3u * stride;
+    const float a0 = vertices[kz] - ray.oz;
+    const float a1 = vertices[next + kz] - ray.oz;
+    const float a2 = vertices[2u * next + kz] - ray.oz;
+    const float x0 = (vertices[kx] - ray.ox) - ray.sx * a0, y0 = (vertices[ky] - ray.oy) - ray.sy * a0;
+    const float x1 = (vertices[next + kx] - ray.ox) - ray.sx * a1, y1 = (vertices[next + ky] - ray.oy) - ray.sy * a1;
+    const float x2 = (vertices[2u * next + kx] - ray.ox) - ray.sx * a2;
+    const float y2 = (vertices[2u * next + ky] - ray.oy) - ray.sy * a2;
+    float u = x2 * y1 - y2 * x1;
+    float v = x0 * y2 - y0 * x2;
+    float w = x1 * y0 - y1 * x0;
+    sk_best r = best;
+    if (!sk_mixed_signs(u, v, w)) {
+        u = sk_accurate_difference(x2, y1, y2, x1);
+        v = sk_accurate_difference(x0, y2, y0, x2);
+        w = sk_accurate_difference(x1, y0, y1, x0);
+        const float det = (u + v) + w;
+        if (!sk_mixed_signs(u, v, w) && det != 0.0f) {
+            const float at = ((u * (ray.sz * a0) + v * (ray.sz * a1)) + w * (ray.sz * a2)) / det;
+            const float t = sk_user_t(ray, at);
+            if (t >= ray.tmin && t <= ray.tmax && sk_is_finite(t) &&
+                (at < best.w || (at == best.w && number < best.triangle) || best.triangle == SETKA_NO_HIT)) {
+                r.w = at;
+                r.u = v / det + 0.0f;
+                r.v = w / det + 0.0f;
+                r.triangle = number;
+            }
+        }
+    }
+    return r;
+}
+
+/** 1 if the query sees the instance of this triangle. */
+SK_FUNCTION int sk_is_visible(sk_trace_params params, SK_GLOBAL const sk_u32* instance_starts,
+                              SK_GLOBAL const SetkaInstance* instances, sk_u32 triangle) {
+    int visible = 1;
+    if (params.filters != 0u) {
+        const sk_u32 instance = sk_find_segment(instance_starts, params.instance_count, triangle);
+        visible = (instances[instance].mask & params.mask) != 0u;
+    }
+    return visible;
+}
+
+SK_FUNCTION sk_best sk_no_hit(void) {
+    sk_best r;
+    r.w = 3e38f;
+    r.u = 0.0f;
+    r.v = 0.0f;
+    r.triangle = SETKA_NO_HIT;
+    return r;
+}
+
+/** The public record of a best hit. */
+SK_FUNCTION SetkaHit sk_make_hit(sk_trace_params params, sk_working_ray ray, SK_GLOBAL const sk_u32* instance_starts,
+                                 sk_best best) {
+    SetkaHit hit;
+    hit.t = sk_bits_float(0x7f800000u);
+    hit.u = 0.0f;
+    hit.v = 0.0f;
+    hit.primitive = SETKA_NO_HIT;
+    hit.instance = SETKA_NO_HIT;
+    if (best.triangle != SETKA_NO_HIT) {
+        hit.t = sk_user_t(ray, best.w);
+        hit.u = best.u;
+        hit.v = best.v;
+        hit.instance = sk_find_segment(instance_starts, params.instance_count, best.triangle);
+        hit.primitive = best.triangle - instance_starts[hit.instance];
+    }
+    return hit;
+}
+
+#endif

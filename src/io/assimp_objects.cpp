@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+/// Which camera and lights does an imported scene have? Those that are usable, in world space.
+#include "io/assimp_objects.hpp"
+
+#include <assimp/camera.h>
+#include <assimp/light.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace setka::io::detail {
+
+namespace {
+
+/// More light than this at the middle of the scene is taken for physical units.
+constexpr double max_brightness = 2;
+
+aiMatrix4x4 world_transform(const aiScene& source, const aiString& name) {
+    aiMatrix4x4 transform;
+    for (const aiNode* node = source.mRootNode->FindNode(name); node; node = node->mParent)
+        transform = node->mTransformation * transform;
+    return transform;
+}
+
+Float3 to_float3(const aiVector3D& v) { return {v.x, v.y, v.z}; }
+
+bool is_usable(const aiVector3D& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+/// A direction of length 1, or zero if it has none.
+aiVector3D unit(const aiVector3D& v) {
+    const float length = std::sqrt(v.SquareLength());
+    return std::isfinite(length) && length > 0 ? aiVector3D(v.x / length, v.y / length, v.z / length)
+                                               : aiVector3D();
+}
+
+std::optional<Camera> place(const aiCamera& source, const aiMatrix4x4& world) {
+    if (source.mOrthographicWidth > 0) return std::nullopt;
+    const aiMatrix3x3 linear(world);
+    const aiVector3D eye = world * source.mPosition;
+    const aiVector3D view = unit(linear * source.mLookAt), up = unit(linear * source.mUp);
+    const double aspect = source.mAspect > 0 && std::isfinite(source.mAspect) ? source.mAspect : 1;
+    const double vertical =
+        2 * std::atan(std::tan(double(source.mHorizontalFOV) / 2) / aspect) * 180 / 3.14159265358979323846;
+    Camera camera;
+    camera.eye = to_float3(eye);
+    camera.target = to_float3(eye + view);
+    camera.up = to_float3(up);
+    // Rounded, since the last bits of tan and atan differ between machines.
+    camera.vertical_fov_degrees = static_cast<float>(std::round(vertical * 1e4) / 1e4);
+    const bool usable = is_usable(eye) && view.SquareLength() > 0 && (view ^ up).SquareLength() > 1e-8f &&
+                        camera.target != camera.eye && camera.vertical_fov_degrees > 0 &&
+                        camera.vertical_fov_degrees < 180;
+    return usable ? std::optional(camera) : std::nullopt;
+}
+
+double brightness(const Float3& intensity) { return std::max({intensity.x, intensity.y, intensity.z}); }
+
+/// The light that reaches the middle of the scene.
+double total_brightness(const Scene& scene) {
+    const Bounds bounds = scene.bounds();
+    double total = 0;
+    for (const DirectionalLight& light : scene.directional_lights) total += brightness(light.intensity);
+    for (const PointLight& light : scene.point_lights) {
+        const float position[3] = {light.position.x, light.position.y, light.position.z};
+        double square = 0;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double distance = position[axis] - (double(bounds.lower[axis]) + bounds.upper[axis]) / 2;
+            square += distance * distance;
+        }
+        if (square > 0) total += brightness(light.intensity) / square;
+    }
+    return total;
+}
+
+}  // namespace
+
+std::optional<Camera> take_camera(const aiScene& source) {
+    for (unsigned i = 0; i < source.mNumCameras; ++i) {
+        const aiCamera& camera = *source.mCameras[i];
+        if (const auto placed = place(camera, world_transform(source, camera.mName))) return placed;
+    }
+    return std::nullopt;
+}
+
+void take_lights(const aiScene& source, Scene& scene) {
+    for (unsigned i = 0; i < source.mNumLights; ++i) {
+        const aiLight& light = *source.mLights[i];
+        const aiMatrix4x4 world = world_transform(source, light.mName);
+        const aiVector3D position = world * light.mPosition;
+        const aiVector3D direction = unit(aiMatrix3x3(world) * light.mDirection);
+        const Float3 intensity{light.mColorDiffuse.r, light.mColorDiffuse.g, light.mColorDiffuse.b};
+        if (!std::isfinite(brightness(intensity)) || brightness(intensity) <= 0) continue;
+        if (light.mType == aiLightSource_DIRECTIONAL && direction.SquareLength() > 0)
+            scene.directional_lights.push_back({to_float3(direction), intensity});
+        else if ((light.mType == aiLightSource_POINT || light.mType == aiLightSource_SPOT) &&
+                 is_usable(position))
+            scene.point_lights.push_back({to_float3(position), intensity, 1});
+    }
+    const double total = total_brightness(scene);
+    if (!(total > max_brightness) || !std::isfinite(total)) return;
+    const auto dim = [&](Float3& c) {
+        for (float* channel : {&c.x, &c.y, &c.z}) *channel = static_cast<float>(*channel / total);
+    };
+    for (PointLight& light : scene.point_lights) dim(light.intensity);
+    for (DirectionalLight& light : scene.directional_lights) dim(light.intensity);
+}
+
+}  // namespace setka::io::detail

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: MIT
+/// How do OBJ and glTF files become scenes? assimp reads them without any of its own post-processing; meshes,
+/// nodes, cameras and lights are taken over here. Triangles, welding and normals are made as for every other
+/// format.
+#include <assimp/camera.h>
+#include <assimp/light.h>
+#include <assimp/mesh.h>
+#include <assimp/scene.h>
+
+#include <assimp/Importer.hpp>
+#include <cmath>
+#include <limits>
+
+#include "io/assimp_files.hpp"
+#include "io/assimp_material.hpp"
+#include "io/assimp_objects.hpp"
+#include "io/file.hpp"
+#include "io/readers.hpp"
+#include "io/unicode.hpp"
+
+namespace setka::io::detail {
+
+namespace {
+
+enum class Source { Obj, Gltf };
+
+const aiScene& import(Assimp::Importer& importer, const std::filesystem::path& file, std::string bytes) {
+    importer.SetIOHandler(new AssimpFiles(file, std::move(bytes)));  // the importer owns it
+    const aiScene* scene = nullptr;
+    try {
+        scene = importer.ReadFile(file.string(), 0);
+    } catch (const std::bad_alloc&) {
+        fail_read(file, "there is not enough memory for it");
+    } catch (const std::exception& error) {
+        fail_read(file, std::string("malformed: ") + error.what());
+    }
+    if (!scene) fail_read(file, std::string("malformed: ") + importer.GetErrorString());
+    if (!scene->mRootNode) fail_read(file, "it holds no node");
+    return *scene;
+}
+
+RawMesh take_mesh(const aiMesh& source, Source kind) {
+    RawMesh raw;
+    raw.name = source.mName.C_Str();
+    // assimp gives every corner of an OBJ face its own vertex.
+    raw.sharing = kind == Source::Obj ? Sharing::ByPosition : Sharing::ByIndex;
+    if (!source.HasPositions()) return raw;
+    const auto take = [&](const aiVector3D* from, std::vector<Float3>& to) {
+        to.reserve(source.mNumVertices);
+        for (unsigned i = 0; i < source.mNumVertices; ++i) to.push_back({from[i].x, from[i].y, from[i].z});
+    };
+    take(source.mVertices, raw.positions);
+    if (source.HasNormals()) take(source.mNormals, raw.normals);
+    for (unsigned f = 0; f < source.mNumFaces; ++f) {
+        const aiFace& face = source.mFaces[f];
+        for (unsigned i = 0; i < face.mNumIndices; ++i) raw.corners.push_back(face.mIndices[i]);
+        raw.end_face();
+    }
+    if (source.HasVertexColors(0) && source.mNumVertices) {
+        double sum[3] = {};
+        for (unsigned i = 0; i < source.mNumVertices; ++i)
+            for (unsigned c = 0; c < 3; ++c) sum[c] += source.mColors[0][i][c];
+        const auto mean = [&](double value) {
+            value /= source.mNumVertices;
+            return static_cast<float>(value > 0 ? std::min(value, 1.0) : 0.0);
+        };
+        raw.colour = Float3{mean(sum[0]), mean(sum[1]), mean(sum[2])};
+    }
+    return raw;
+}
+
+class SceneBuilder {
+  public:
+    SceneBuilder(const std::filesystem::path& file, const aiScene& source, Source kind)
+        : file_(file), source_(source), kind_(kind) {}
+
+    [[nodiscard]] Scene build() {
+        for (unsigned i = 0; i < source_.mNumMaterials; ++i) {
+            const aiMaterial& material = *source_.mMaterials[i];
+            imported_.push_back(kind_ == Source::Obj ? convert_mtl(material, file_.parent_path())
+                                                     : convert_gltf(material, source_, file_.parent_path()));
+            scene_.materials.push_back(imported_.back().material);
+        }
+        for (unsigned i = 0; i < source_.mNumMeshes; ++i) add_mesh(*source_.mMeshes[i]);
+        add_instances();
+        scene_.camera = take_camera(source_);
+        take_lights(source_, scene_);
+        return std::move(scene_);
+    }
+
+  private:
+    static constexpr std::uint32_t no_mesh = std::numeric_limits<std::uint32_t>::max();
+
+    struct PlacedMesh {
+        std::uint32_t mesh = no_mesh;  ///< without a triangle: no mesh
+        std::uint32_t material = 0;
+    };
+
+    void add_mesh(const aiMesh& source) {
+        RawMesh raw = take_mesh(source, kind_);
+        const std::optional<Float3> colour = raw.colour;
+        Mesh mesh = finish_mesh(file_, std::move(raw));
+        PlacedMesh placed;
+        if (!mesh.triangles.empty()) {
+            placed.mesh = static_cast<std::uint32_t>(scene_.meshes.size());
+            placed.material = material_of(source.mMaterialIndex, colour);
+            scene_.meshes.push_back(std::move(mesh));
+        }
+        placed_.push_back(placed);
+    }
+
+    /// The number of the material; a copy in the mean vertex colour where the material has no colour of its
+    /// own.
+    std::uint32_t material_of(unsigned index, const std::optional<Float3>& colour) {
+        Material material = index < imported_.size() ? imported_[index].material : Material{};
+        if (index < imported_.size() && (imported_[index].has_colour || !colour)) return index;
+        if (colour) material.diffuse = *colour;
+        scene_.materials.push_back(std::move(material));
+        return static_cast<std::uint32_t>(scene_.materials.size() - 1);
+    }
+
+    void add_instances() {
+        struct Open {
+            const aiNode* node;
+            aiMatrix4x4 transform;
+        };
+        std::vector<Open> open{{source_.mRootNode, aiMatrix4x4()}};
+        while (!open.empty()) {
+            const Open at = open.back();
+            open.pop_back();
+            const aiMatrix4x4 transform = at.transform * at.node->mTransformation;
+            for (unsigned i = 0; i < at.node->mNumMeshes; ++i)
+                if (at.node->mMeshes[i] < placed_.size())
+                    add_instance(placed_[at.node->mMeshes[i]], transform, *at.node);
+            for (unsigned i = at.node->mNumChildren; i-- > 0;)
+                open.push_back({at.node->mChildren[i], transform});
+        }
+    }
+
+    void add_instance(const PlacedMesh& placed, const aiMatrix4x4& matrix, const aiNode& node) {
+        if (placed.mesh == no_mesh) return;
+        const auto name = [&] { return "node '" + one_line(node.mName.C_Str(), 60) + "'"; };
+        // Nodes may project as far as the format knows; instances cannot.
+        if (matrix.d1 != 0 || matrix.d2 != 0 || matrix.d3 != 0 || matrix.d4 != 1)
+            fail_read(file_, "the transform of " + name() + " is not affine: its last row must be 0 0 0 1");
+        Instance instance;
+        instance.mesh = placed.mesh;
+        instance.material = placed.material;
+        for (unsigned row = 0; row < 3; ++row)
+            for (unsigned column = 0; column < 4; ++column) {
+                if (!std::isfinite(matrix[row][column]))
+                    fail_read(file_, "the transform of " + name() + " is not finite");
+                instance.transform.rows[row * 4 + column] = matrix[row][column];
+            }
+        scene_.instances.push_back(instance);
+    }
+
+    const std::filesystem::path& file_;
+    const aiScene& source_;
+    Source kind_;
+    Scene scene_;
+    std::vector<ImportedMaterial> imported_;
+    std::vector<PlacedMesh> placed_;
+};
+
+}  // namespace
+
+Scene read_obj(const std::filesystem::path& file, std::string bytes) {
+    Assimp::Importer importer;
+    const aiScene& scene = import(importer, file, filter_obj(file, to_utf8(file, std::move(bytes))));
+    return SceneBuilder(file, scene, Source::Obj).build();
+}
+
+Scene read_gltf(const std::filesystem::path& file, std::string bytes) {
+    CheckedGltf checked = check_gltf(file, bytes);
+    bytes = {};
+    Assimp::Importer importer;
+    const aiScene& scene = import(importer, file, std::move(checked.bytes));
+    std::uint64_t expected = 0, found = 0;
+    for (const std::uint64_t count : checked.triangle_counts) expected += count;
+    for (unsigned i = 0; i < scene.mNumMeshes; ++i)
+        for (unsigned f = 0; f < scene.mMeshes[i]->mNumFaces; ++f)
+            found += scene.mMeshes[i]->mFaces[f].mNumIndices >= 3;
+    // assimp leaves triangles out whose indices are out of range.
+    if (found != expected)
+        fail_read(file, "only " + std::to_string(found) + " of " + std::to_string(expected) +
+                            " triangles can be used: an index is out of range");
+    return SceneBuilder(file, scene, Source::Gltf).build();
+}
+
+}  // namespace setka::io::detail

@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: MIT
+/// Can assimp be trusted with this glTF file? assimp 5.2 follows node cycles without end, drops triangles
+/// with an index out of range without a word, and assumes JSON types. So the JSON is copied through a schema
+/// of what setka reads (animations, skins, morph targets and unknown extensions stay behind), and every
+/// reference and range in the copy is checked.
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "io/file.hpp"
+#include "io/gltf_schema.hpp"
+#include "io/readers.hpp"
+
+namespace setka::io::detail {
+
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr std::uint64_t max_accessor_count = std::uint64_t(1) << 28;
+constexpr std::size_t max_node_depth = 256;
+
+std::uint32_t little_endian(const std::string& bytes, std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 4; i-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes.at(at + i));
+    return value;
+}
+
+/// The two chunks of a GLB container, or a text alone.
+struct Container {
+    std::string json;
+    std::optional<std::string> binary;
+    bool is_glb = false;
+};
+
+Container open_container(const std::filesystem::path& file, const std::string& bytes) {
+    if (bytes.compare(0, 4, "glTF") != 0) return {bytes, std::nullopt, false};
+    if (bytes.size() < 20) fail_read(file, "the GLB header is truncated");
+    if (const std::uint32_t version = little_endian(bytes, 4); version != 2)
+        fail_read(file, "GLB version " + std::to_string(version) + "; version 2 is read");
+    const std::uint64_t length = little_endian(bytes, 8);
+    if (length > bytes.size())
+        fail_read(file, "the GLB header promises " + std::to_string(length) + " bytes, but the file has " +
+                            std::to_string(bytes.size()) + ": it is truncated or malformed");
+    Container container;
+    container.is_glb = true;
+    for (std::uint64_t at = 12; at + 8 <= length;) {
+        const std::uint64_t size_bytes = little_endian(bytes, at);
+        const std::uint32_t kind = little_endian(bytes, at + 4);
+        at += 8;
+        if (size_bytes > length - at) fail_read(file, "a GLB chunk reaches past the end of the file");
+        if (kind == 0x4e4f534a && container.json.empty()) container.json = bytes.substr(at, size_bytes);
+        if (kind == 0x004e4942 && !container.binary) container.binary = bytes.substr(at, size_bytes);
+        at += (size_bytes + 3) / 4 * 4;
+    }
+    if (container.json.empty()) fail_read(file, "the GLB file has no JSON chunk");
+    return container;
+}
+
+std::string close_container(const Json& json, const Container& container) {
+    std::string text = json.dump();
+    if (!container.is_glb) return text;
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    std::string glb = "glTF";
+    const auto append = [&glb](std::uint64_t value) {
+        for (int i = 0; i < 4; ++i) glb += static_cast<char>(value >> (8 * i) & 0xff);
+    };
+    std::string binary = container.binary.value_or(std::string());
+    binary.resize((binary.size() + 3) / 4 * 4, '\0');
+    append(2);
+    append(20 + text.size() + (container.binary ? 8 + binary.size() : 0));
+    append(text.size());
+    append(0x4e4f534a);
+    glb += text;
+    if (container.binary) {
+        append(binary.size());
+        append(0x004e4942);
+        glb += binary;
+    }
+    return glb;
+}
+
+class GltfChecker {
+  public:
+    GltfChecker(const std::filesystem::path& file, Json json, const Container& container)
+        : file_(file), json_(std::move(json)), container_(container) {}
+
+    [[nodiscard]] CheckedGltf check() {
+        for (std::size_t i = 0; i < size("buffers"); ++i) check_buffer(json_["buffers"][i], i);
+        for (std::size_t i = 0; i < size("bufferViews"); ++i) {
+            const Json& view = json_["bufferViews"][i];
+            const Json& buffer = target(view, "buffer", "buffers");
+            check_range(view.value("byteOffset", std::uint64_t(0)), number(view, "byteLength"),
+                        number(buffer, "byteLength"), "bufferView " + std::to_string(i));
+        }
+        for (std::size_t i = 0; i < size("accessors"); ++i) check_accessor(json_["accessors"][i], i);
+        for (std::size_t i = 0; i < size("images"); ++i)
+            if (json_["images"][i].contains("bufferView"))
+                (void)target(json_["images"][i], "bufferView", "bufferViews");
+        drop_dangling_textures(json_);
+        CheckedGltf checked;
+        for (std::size_t i = 0; i < size("meshes"); ++i)
+            for (const Json& primitive : json_["meshes"][i].value("primitives", Json::array()))
+                checked.triangle_counts.push_back(check_primitive(primitive, i));
+        check_nodes();
+        checked.bytes = close_container(json_, container_);
+        return checked;
+    }
+
+  private:
+    [[nodiscard]] std::size_t size(const char* key) const {
+        return json_.contains(key) ? json_[key].size() : 0;
+    }
+
+    [[nodiscard]] std::uint64_t number(const Json& object, const char* key) const {
+        if (!object.contains(key)) fail_read(file_, "malformed glTF: '" + std::string(key) + "' is missing");
+        return object[key].get<std::uint64_t>();
+    }
+
+    [[nodiscard]] const Json& element(std::uint64_t index, const char* list) const {
+        if (index >= size(list))
+            fail_read(file_, "malformed glTF: index " + std::to_string(index) + " into '" + list +
+                                 "', which has " + std::to_string(size(list)));
+        return json_[list][index];
+    }
+
+    [[nodiscard]] const Json& target(const Json& object, const char* key, const char* list) const {
+        return element(number(object, key), list);
+    }
+
+    void check_range(std::uint64_t offset, std::uint64_t length, std::uint64_t available,
+                     const std::string& what) const {
+        if (offset > available || length > available - offset)
+            fail_read(file_, "malformed glTF: " + what + " reaches from byte " + std::to_string(offset) +
+                                 " over " + std::to_string(length) + " bytes, but there are " +
+                                 std::to_string(available));
+    }
+
+    void check_buffer(Json& buffer, std::size_t index) const {
+        const std::string what = "buffer " + std::to_string(index);
+        const std::uint64_t length = number(buffer, "byteLength");
+        std::uint64_t available = 0;
+        if (!buffer.contains("uri")) {
+            if (index != 0 || !container_.binary)
+                fail_read(file_, "malformed glTF: " + what + " has no data");
+            available = container_.binary->size();
+        } else if (const std::string uri = buffer["uri"].get<std::string>(); uri.starts_with("data:")) {
+            const std::size_t comma = uri.find(',');
+            if (comma == uri.npos || uri.compare(comma - 7, 7, ";base64") != 0)
+                fail_read(file_, "malformed glTF: " + what + " is a data URI that is not base64");
+            const std::size_t digits = std::min(uri.find('=', comma), uri.size()) - comma - 1;
+            available = digits * 3 / 4;
+        } else {
+            const std::filesystem::path path = file_.parent_path() / decode_uri(uri);
+            std::error_code error;
+            available =
+                std::filesystem::is_regular_file(path, error) ? std::filesystem::file_size(path, error) : 0;
+            if (error || !std::filesystem::is_regular_file(path, error))
+                fail_read(file_,
+                          "its " + what + " is in '" + one_line(path.string()) + "', which cannot be read");
+        }
+        check_range(0, length, available, what);
+    }
+
+    void check_accessor(const Json& accessor, std::size_t index) const {
+        const std::string what = "accessor " + std::to_string(index);
+        const std::uint64_t count = number(accessor, "count");
+        const std::uint64_t item = component_bytes(accessor, what) * component_count(accessor, what);
+        if (count > max_accessor_count)
+            fail_read(file_, what + " has " + std::to_string(count) + " elements, above 2^28");
+        if (accessor.contains("bufferView"))
+            check_view(target(accessor, "bufferView", "bufferViews"), accessor, count, item, what);
+        else if (!accessor.contains("sparse"))
+            fail_read(file_, "malformed glTF: " + what + " has no bufferView");
+        if (!accessor.contains("sparse")) return;
+        const Json& sparse = accessor["sparse"];
+        const std::uint64_t changed = number(sparse, "count");
+        if (changed > count || !sparse.contains("indices") || !sparse.contains("values"))
+            fail_read(file_, "malformed glTF: the sparse part of " + what);
+        // Zeros without a buffer take no space in the file: only what is written is believed.
+        if (!accessor.contains("bufferView") && count > (std::uint64_t(1) << 22))
+            fail_read(file_, what + " has " + std::to_string(count) + " elements without a bufferView");
+        check_view(target(sparse["indices"], "bufferView", "bufferViews"), sparse["indices"], changed,
+                   component_bytes(sparse["indices"], what), what);
+        check_view(target(sparse["values"], "bufferView", "bufferViews"), sparse["values"], changed, item,
+                   what);
+    }
+
+    void check_view(const Json& view, const Json& user, std::uint64_t count, std::uint64_t item,
+                    const std::string& what) const {
+        const std::uint64_t stride = view.value("byteStride", item);
+        if (stride > 65536 || (stride && stride < item))
+            fail_read(file_, "malformed glTF: the byteStride of " + what);
+        if (count)
+            check_range(user.value("byteOffset", std::uint64_t(0)),
+                        (count - 1) * (stride ? stride : item) + item, number(view, "byteLength"), what);
+    }
+
+    [[nodiscard]] std::uint64_t component_bytes(const Json& accessor, const std::string& what) const {
+        switch (number(accessor, "componentType")) {
+            case 5120:
+            case 5121:
+                return 1;
+            case 5122:
+            case 5123:
+                return 2;
+            case 5125:
+            case 5126:
+                return 4;
+            default:
+                fail_read(file_, "malformed glTF: the componentType of " + what);
+        }
+    }
+
+    [[nodiscard]] std::uint64_t component_count(const Json& accessor, const std::string& what) const {
+        static constexpr std::pair<std::string_view, std::uint64_t> counts[] = {
+            {"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}};
+        const std::string type = accessor.value("type", std::string());
+        for (const auto& [name, count] : counts)
+            if (type == name) return count;
+        fail_read(file_, "malformed glTF: the type of " + what);
+    }
+
+    /// Checks what a primitive refers to; the triangles that it holds.
+    [[nodiscard]] std::uint64_t check_primitive(const Json& primitive, std::size_t mesh) const {
+        const std::string what = "a primitive of mesh " + std::to_string(mesh);
+        if (primitive.contains("material")) (void)target(primitive, "material", "materials");
+        const Json attributes = primitive.value("attributes", Json::object());
+        if (!attributes.contains("POSITION")) return 0;
+        const std::uint64_t vertices = number(target(attributes, "POSITION", "accessors"), "count");
+        for (const auto& [name, value] : attributes.items()) {
+            const Json& accessor = target(attributes, name.c_str(), "accessors");
+            const bool is_colour = name.starts_with("COLOR");
+            if (!is_colour && (number(accessor, "componentType") != 5126 || accessor["type"] != "VEC3"))
+                fail_read(file_, name + " of " + what + " is not made of three floats, as it must be");
+            if (number(accessor, "count") != vertices)
+                fail_read(file_, name + " of " + what + " has another count than POSITION");
+        }
+        std::uint64_t corners = vertices;
+        if (primitive.contains("indices")) {
+            const Json& indices = target(primitive, "indices", "accessors");
+            const std::uint64_t type = number(indices, "componentType");
+            if (indices["type"] != "SCALAR" || (type != 5121 && type != 5123 && type != 5125))
+                fail_read(file_, "the indices of " + what + " are not unsigned integers");
+            corners = number(indices, "count");
+        }
+        const std::uint64_t mode = primitive.value("mode", std::uint64_t(4));
+        if (mode > 6) fail_read(file_, "malformed glTF: mode " + std::to_string(mode) + " of " + what);
+        return mode == 4 ? corners / 3 : mode >= 5 && corners > 2 ? corners - 2 : 0;
+    }
+
+    /// Nodes are trees: each has one parent at most, and from the roots every path ends.
+    void check_nodes() {
+        std::vector<std::size_t> parents(size("nodes"), 0);
+        for (std::size_t i = 0; i < parents.size(); ++i) {
+            const Json& node = json_["nodes"][i];
+            if (node.contains("mesh")) (void)target(node, "mesh", "meshes");
+            if (node.contains("camera")) (void)target(node, "camera", "cameras");
+            for (const Json& child : node.value("children", Json::array())) {
+                (void)element(child.get<std::uint64_t>(), "nodes");
+                if (++parents[child.get<std::size_t>()] > 1)
+                    fail_read(file_, "malformed glTF: node " + child.dump() + " has more than one parent");
+            }
+        }
+        if (!json_.contains("scenes") || json_["scenes"].empty()) {
+            Json roots = Json::array();
+            for (std::size_t i = 0; i < parents.size(); ++i)
+                if (!parents[i]) roots.push_back(i);
+            json_["scenes"] = Json::array({Json{{"nodes", roots}}});
+            json_["scene"] = 0;
+        }
+        (void)element(json_.value("scene", std::uint64_t(0)), "scenes");
+        for (const Json& scene : json_["scenes"])
+            for (const Json& root : scene.value("nodes", Json::array())) {
+                (void)element(root.get<std::uint64_t>(), "nodes");
+                // With one parent a node, a cycle has no way in: only a root inside one can reach it.
+                if (parents[root.get<std::size_t>()])
+                    fail_read(file_, "malformed glTF: node " + root.dump() + " of a scene is not a root");
+                check_depth(root.get<std::size_t>());
+            }
+    }
+
+    void check_depth(std::size_t root) const {
+        std::vector<std::pair<std::size_t, std::size_t>> open{{root, 1}};
+        while (!open.empty()) {
+            const auto [node, depth] = open.back();
+            open.pop_back();
+            if (depth > max_node_depth)
+                fail_read(file_,
+                          "its nodes are nested more than " + std::to_string(max_node_depth) + " deep");
+            for (const Json& child : json_["nodes"][node].value("children", Json::array()))
+                open.emplace_back(child.get<std::size_t>(), depth + 1);
+        }
+    }
+
+    /// A texture is only a colour here, so a reference to nothing is no error.
+    void drop_dangling_textures(Json& value) {
+        if (value.is_object() || value.is_array())
+            for (Json& inner : value) drop_dangling_textures(inner);
+        if (!value.is_object()) return;
+        for (const char* key : {"baseColorTexture", "diffuseTexture"}) {
+            if (!value.contains(key)) continue;
+            const std::uint64_t index = value[key].value("index", std::uint64_t(0xffffffff));
+            const bool known = index < size("textures") && json_["textures"][index].contains("source") &&
+                               json_["textures"][index]["source"].get<std::uint64_t>() < size("images");
+            if (!known) value.erase(key);
+        }
+    }
+
+    const std::filesystem::path& file_;
+    Json json_;
+    const Container& container_;
+};
+
+}  // namespace
+
+CheckedGltf check_gltf(const std::filesystem::path& file, const std::string& bytes) {
+    const Container container = open_container(file, bytes);
+    try {
+        return GltfChecker(file, copy_gltf(file, container.json), container).check();
+    } catch (const Json::exception& error) {
+        fail_read(file, std::string("malformed glTF: ") + error.what());
+    }
+}
+
+}  // namespace setka::io::detail

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+/// What of an OBJ file does assimp get to see? Vertices, normals, faces, groups and materials, with indices
+/// that were checked. assimp 5.2 refuses faces whose texture coordinates are missing, which are common and
+/// never needed here; and it cannot say in which line an index is wrong.
+#include <algorithm>
+
+#include "io/file.hpp"
+#include "io/readers.hpp"
+#include "io/text.hpp"
+
+namespace setka::io::detail {
+
+namespace {
+
+constexpr std::string_view kept_as_they_are[] = {"v", "vn", "o", "g", "usemtl", "mtllib"};
+
+/// A backslash at the end of a line joins it with the next.
+std::string join_lines(std::string text) {
+    for (std::size_t at = text.find('\\'); at != text.npos; at = text.find('\\', at + 1)) {
+        const std::size_t end = text.compare(at + 1, 2, "\r\n") == 0 ? at + 3 : at + 2;
+        if (end > text.size() || text[end - 1] != '\n') continue;
+        for (std::size_t i = at; i < end; ++i) text[i] = ' ';
+    }
+    return text;
+}
+
+class ObjFilter {
+  public:
+    ObjFilter(const std::filesystem::path& file, std::string_view text) : file_(file), text_(text) {}
+
+    [[nodiscard]] std::string filter() {
+        // Faces may come before their vertices, so all are counted first.
+        for (TextCursor lines(text_); !lines.at_end();) {
+            const std::string_view keyword = TextCursor(lines.line()).word();
+            total_vertices_ += keyword == "v";
+            total_normals_ += keyword == "vn";
+        }
+        output_.reserve(text_.size());
+        for (TextCursor lines(text_); !lines.at_end();) {
+            const std::string_view line = lines.line();
+            ++line_number_;
+            TextCursor words(line, '#');
+            const std::string_view keyword = words.word();
+            vertices_ += keyword == "v";
+            normals_ += keyword == "vn";
+            if (keyword == "f") {
+                add_face(words);
+            } else if (std::ranges::find(kept_as_they_are, keyword) != std::end(kept_as_they_are)) {
+                output_.append(keyword).append(" ").append(keyword[0] == 'v' ? number_words(words)
+                                                                             : name(words));
+                output_ += '\n';
+            }
+        }
+        return std::move(output_);
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& reason) const {
+        fail_read(file_, "line " + std::to_string(line_number_) + ": " + reason);
+    }
+
+    /// The numbers of a vertex, single blanks between them: assimp counts words by its own rules.
+    [[nodiscard]] static std::string number_words(TextCursor& words) {
+        std::string numbers;
+        for (std::string_view word = words.word(); !word.empty(); word = words.word())
+            numbers.append(numbers.empty() ? "" : " ").append(word);
+        return numbers;
+    }
+
+    [[nodiscard]] static std::string name(TextCursor& words) {
+        const std::string_view rest = words.rest();
+        const std::size_t begin = std::min(rest.find_first_not_of(" \t"), rest.size());
+        return std::string(rest.substr(begin));
+    }
+
+    /// From 1 up, or from -1 down for the latest: what an index of OBJ means, numbered from 1; 0 if there is
+    /// no such thing.
+    [[nodiscard]] static std::uint64_t resolve(std::int64_t index, std::uint64_t so_far,
+                                               std::uint64_t total) {
+        if (index < 0)
+            return static_cast<std::uint64_t>(-(index + 1)) < so_far
+                       ? so_far + 1 - static_cast<std::uint64_t>(-index)
+                       : 0;
+        return static_cast<std::uint64_t>(index) <= total ? static_cast<std::uint64_t>(index) : 0;
+    }
+
+    /// A corner is v, v/vt, v//vn or v/vt/vn.
+    void add_corner(std::string_view corner) {
+        const std::size_t slash = std::min(corner.find('/'), corner.size());
+        const std::optional<std::int64_t> index = parse_integer(corner.substr(0, slash));
+        if (!index)
+            fail("'" + one_line(corner, 40) +
+                 "' is no corner of a face; known are v, v/vt, v//vn and v/vt/vn");
+        const std::uint64_t vertex = resolve(*index, vertices_, total_vertices_);
+        if (vertex == 0)
+            fail("vertex index " + std::to_string(*index) + " is out of range: there are " +
+                 std::to_string(total_vertices_) + " vertices, numbered from 1, or from -1 backwards");
+        face_.append(" ").append(std::to_string(vertex));
+        ++corner_count_;
+        const std::size_t second = slash < corner.size() ? corner.find('/', slash + 1) : corner.npos;
+        if (second == corner.npos) return;
+        // A normal that is not there counts as none given: normals are made then.
+        const std::optional<std::int64_t> normal = parse_integer(corner.substr(second + 1));
+        if (const std::uint64_t known = normal ? resolve(*normal, normals_, total_normals_) : 0)
+            face_.append("//").append(std::to_string(known));
+    }
+
+    void add_face(TextCursor& words) {
+        face_ = "f";
+        corner_count_ = 0;
+        for (std::string_view word = words.word(); !word.empty(); word = words.word()) add_corner(word);
+        if (corner_count_ >= 3) output_.append(face_).append("\n");
+    }
+
+    const std::filesystem::path& file_;
+    std::string_view text_;
+    std::string output_, face_;
+    std::uint64_t line_number_ = 0, corner_count_ = 0;
+    std::uint64_t vertices_ = 0, normals_ = 0, total_vertices_ = 0, total_normals_ = 0;
+};
+
+}  // namespace
+
+std::string filter_obj(const std::filesystem::path& file, std::string text) {
+    text = join_lines(std::move(text));
+    return ObjFilter(file, text).filter();
+}
+
+}  // namespace setka::io::detail

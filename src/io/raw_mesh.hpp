@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+/// What do all mesh readers have in common? Polygons as a file holds them, and the one way in which they
+/// become a Mesh.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "setka/scene.hpp"
+
+namespace setka::io::detail {
+
+/// Whether a file says which corners are one vertex.
+enum class Sharing {
+    ByIndex,     ///< it does: vertices stay as they are
+    ByPosition,  ///< it does not (STL, unrolled OBJ): corners with the same bits become one vertex
+};
+
+/// Polygons with their vertices, as read. Faces with fewer than three corners are points and lines.
+struct RawMesh {
+    std::string name;
+    std::vector<Float3> positions;
+    std::vector<Float3> normals;           ///< one per position, or empty
+    std::vector<std::uint32_t> corners;    ///< the vertices of all faces
+    std::vector<std::uint32_t> face_ends;  ///< where in `corners` each face ends
+    std::optional<Float3> colour;          ///< mean of the vertex colours, linear
+    Sharing sharing = Sharing::ByIndex;
+
+    /// Ends the face whose corners were just added.
+    void end_face() { face_ends.push_back(static_cast<std::uint32_t>(corners.size())); }
+};
+
+/// Triangulates, welds, drops vertices that no triangle uses and makes normals where the file has none that
+/// can be used. Every polygon of n corners gives n - 2 triangles, degenerate ones included, with the winding
+/// of the file. The result has no triangle if the file has only points and lines. Throws InvalidData, naming
+/// `file`, mesh and vertex, for an index out of range or a non-finite vertex that is used.
+[[nodiscard]] Mesh finish_mesh(const std::filesystem::path& file, RawMesh raw);
+
+/// Splits a polygon into corners.size() - 2 triangles: a fan where it is convex, by cutting ears where it is
+/// not.
+void triangulate(std::span<const Float3> positions, std::span<const std::uint32_t> corners,
+                 std::vector<Triangle>& triangles);
+
+/// Gives a mesh smooth normals, split where faces meet at more than 45 degrees: a split vertex is repeated at
+/// the end of the positions. Triangles keep their order, their winding and the positions of their corners.
+void make_normals(Mesh& mesh);
+
+}  // namespace setka::io::detail

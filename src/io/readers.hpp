@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+/// Who reads which format? PLY, STL and OFF have readers here; OBJ and glTF go through assimp, glTF after a
+/// check.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "io/raw_mesh.hpp"
+#include "setka/scene.hpp"
+
+namespace setka::io::detail {
+
+/// Polygon File Format, ASCII and both binary orders; elements vertex, face and tristrips.
+[[nodiscard]] std::vector<RawMesh> read_ply(const std::filesystem::path& file, std::string_view bytes);
+/// Stereolithography, ASCII (a mesh per solid) and binary. Its facet normals are ignored: they say nothing
+/// that the corners do not, and are often zero.
+[[nodiscard]] std::vector<RawMesh> read_stl(const std::filesystem::path& file, std::string_view bytes);
+/// Object File Format, ASCII, with or without normals and colours.
+[[nodiscard]] std::vector<RawMesh> read_off(const std::filesystem::path& file, std::string_view bytes);
+
+/// OBJ through assimp, in UTF-8 or UTF-16.
+[[nodiscard]] Scene read_obj(const std::filesystem::path& file, std::string bytes);
+/// glTF and GLB through assimp, after check_gltf.
+[[nodiscard]] Scene read_gltf(const std::filesystem::path& file, std::string bytes);
+
+/// The statements of an OBJ text that setka reads, indices checked and made absolute.
+/// Throws InvalidData, naming the line, for a face that is malformed or whose vertex does not exist.
+[[nodiscard]] std::string filter_obj(const std::filesystem::path& file, std::string text);
+
+/// A glTF file that was checked: bytes that assimp can be trusted with, and what it must make of them.
+struct CheckedGltf {
+    std::string bytes;                           ///< the file again, reduced to what setka reads
+    std::vector<std::uint64_t> triangle_counts;  ///< one per primitive of all meshes, in order
+};
+/// Throws InvalidData for wrong types, references, ranges and unsupported extensions.
+[[nodiscard]] CheckedGltf check_gltf(const std::filesystem::path& file, const std::string& bytes);
+
+}  // namespace setka::io::detail

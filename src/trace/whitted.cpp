@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+/// In which order do the shading passes run? Down the levels until no ray goes on, then up again with the
+/// colours. Buffers live no longer than their last pass.
+#include "trace/whitted.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "algo/scan.hpp"
+#include "core/launch.hpp"
+#include "setka/error.hpp"
+#include "trace/shading_tables.hpp"
+
+namespace setka {
+
+namespace {
+
+/// Three floats a ray are numbered with 32 bits.
+constexpr std::uint64_t most_level_rays = 1u << 30;
+
+TraceOptions with_mask(TraceOptions options, std::uint32_t mask) {
+    options.mask = mask;
+    return options;
+}
+
+/// The largest coordinate of the box, in magnitude: what the rounding of any point in it is measured by.
+float magnitude(const Bounds& bounds) {
+    float largest = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        largest = std::max({largest, std::fabs(bounds.lower[axis]), std::fabs(bounds.upper[axis])});
+    return largest;
+}
+
+std::uint32_t items(const Buffer<Ray>& rays) { return static_cast<std::uint32_t>(rays.size()); }
+
+}  // namespace
+
+/// What is kept of a level for the way up.
+struct WhittedPasses::Level {
+    Buffer<float> colours;
+    Buffer<float> weights;          // of its rays in their parents' colours; none at level 0
+    Buffer<std::uint32_t> offsets;  // the first child of each ray; none at the last level
+};
+
+WhittedPasses::WhittedPasses(Queue& queue, const DeviceScene& scene, const Structure& structure,
+                             const TraceOptions& trace, std::uint32_t max_depth)
+    : queue_(queue),
+      scene_(scene),
+      structure_(structure),
+      tracer_(with_mask(trace, trace.mask & SK_MASK_USER)),
+      opaque_tracer_(with_mask(trace, SK_MASK_OPAQUE)),
+      max_depth_(max_depth),
+      // A floor under the offset that grows with the triangle: a small triangle's neighbour may be as large
+      // as the scene.
+      offset_(std::ldexp(magnitude(structure.geometry().bounds), -20)),
+      background_(make_background(scene.background())),
+      lights_(make_light_table(scene)),
+      has_transparent_(any_transparent(scene.materials())) {
+    const std::vector<SkMaterial> materials = make_material_table(scene.materials());
+    materials_ = queue.upload(std::span(materials), "materials");
+}
+
+Buffer<SkSurfacePoint> WhittedPasses::surfaces(const Buffer<Ray>& rays, const Buffer<float>& colours) const {
+    const auto hits = queue_.make_buffer<Hit>(rays.size(), "hits");
+    tracer_.closest_hit(queue_, structure_, rays, hits);
+    auto points = queue_.make_buffer<SkSurfacePoint>(rays.size(), "surface points");
+    queue_.impl().begin_stage("shade surfaces");
+    launch_items(queue_, Kernel::shade_surface, items(rays), background_, offset_, rays, hits,
+                 scene_.instances(), scene_.instance_starts(), scene_.indices(), scene_.normals(),
+                 structure_.geometry().triangles, materials_, points, colours);
+    return points;
+}
+
+Buffer<SkSurfacePoint> WhittedPasses::surfaces(const Buffer<Ray>& rays) const {
+    return surfaces(rays, queue_.make_buffer<float>(3 * rays.size(), "colours"));
+}
+
+void WhittedPasses::add_lights(const Buffer<Ray>& rays, const Buffer<SkSurfacePoint>& points,
+                               const Buffer<float>& colours, RayCounts& count) const {
+    if (lights_.empty()) return;
+    const auto shadow_rays = queue_.make_buffer<Ray>(rays.size(), "shadow rays");
+    const auto occluded = queue_.make_buffer<std::uint32_t>(rays.size(), "occlusion");
+    const auto opaque = has_transparent_ ? queue_.make_buffer<std::uint32_t>(rays.size(), "opaque occlusion")
+                                         : Buffer<std::uint32_t>();
+    std::vector<std::uint32_t> active(lights_.size(), 0);
+    const auto active_counts = queue_.upload(std::span(active), "shadow ray counts");
+
+    for (std::uint32_t index = 0; index < lights_.size(); ++index) {
+        const SkLight& light = lights_[index];
+        queue_.impl().begin_stage("shade lights");
+        launch_items(queue_, Kernel::shade_shadow_rays, items(rays), light, points, shadow_rays,
+                     active_counts, index);
+        tracer_.any_hit(queue_, structure_, shadow_rays, occluded);
+        if (has_transparent_) {
+            queue_.impl().begin_stage("shade lights");
+            launch_items(queue_, Kernel::shade_shadow_narrow, items(rays), occluded, shadow_rays);
+            opaque_tracer_.any_hit(queue_, structure_, shadow_rays, opaque);
+        }
+        queue_.impl().begin_stage("shade lights");
+        launch_items(queue_, Kernel::shade_light, items(rays), light, rays, points, materials_, occluded,
+                     opaque, std::uint32_t(has_transparent_), colours);
+    }
+    queue_.download(active_counts, std::span(active));
+    for (const std::uint32_t n : active) count.shadow += n;
+}
+
+Buffer<float> WhittedPasses::colours(Buffer<Ray> rays, RayCounts& count) const {
+    std::vector<Level> levels;
+    auto throughputs = queue_.make_buffer<float>(rays.size(), "throughputs");
+    queue_.impl().fill(*throughputs.memory(), std::bit_cast<std::uint32_t>(1.0f), throughputs.size_bytes());
+    Buffer<float> weights;
+    for (std::uint32_t depth = 0;; ++depth) {
+        const std::uint32_t n = items(rays);
+        Level& level = levels.emplace_back();
+        level.weights = std::move(weights);
+        level.colours = queue_.make_buffer<float>(3 * rays.size(), "colours");
+        const auto points = surfaces(rays, level.colours);
+        add_lights(rays, points, level.colours, count);
+        if (depth == max_depth_) break;
+
+        queue_.impl().begin_stage("spawn rays");
+        auto offsets = queue_.make_buffer<std::uint32_t>(rays.size() + 1, "child offsets");
+        std::uint64_t total = 0;
+        {
+            const auto counts = queue_.make_buffer<std::uint32_t>(rays.size(), "child counts");
+            launch_items(queue_, Kernel::shade_child_count, n, rays, points, materials_, throughputs, counts);
+            total = exclusive_scan(queue_, counts, n, offsets, "mirror and refraction rays");
+        }
+        if (total == 0) break;
+        if (total > most_level_rays)
+            throw Error(ErrorCategory::OutOfMemory, std::to_string(total) + " rays go on from one batch at depth " +
+                                                        std::to_string(depth) + "; at most " +
+                                                        std::to_string(most_level_rays) + " can be numbered");
+        count.secondary += total;
+        auto child_rays = queue_.make_buffer<Ray>(total, "rays");
+        auto child_throughputs = queue_.make_buffer<float>(total, "throughputs");
+        weights = queue_.make_buffer<float>(3 * total, "weights");
+        queue_.impl().begin_stage("spawn rays");
+        launch_items(queue_, Kernel::shade_child_emit, n, rays, points, materials_, throughputs, offsets,
+                     child_rays, weights, child_throughputs);
+        level.offsets = std::move(offsets);
+        rays = std::move(child_rays);
+        throughputs = std::move(child_throughputs);
+    }
+    return gather(std::move(levels));
+}
+
+Buffer<float> WhittedPasses::gather(std::vector<Level> levels) const {
+    queue_.impl().begin_stage("gather");
+    while (levels.size() > 1) {
+        const Level child = std::move(levels.back());
+        levels.pop_back();
+        const Level& parent = levels.back();
+        launch_items(queue_, Kernel::shade_gather, static_cast<std::uint32_t>(parent.colours.size() / 3),
+                     parent.offsets, child.weights, child.colours, parent.colours);
+    }
+    return levels.front().colours;
+}
+
+}  // namespace setka

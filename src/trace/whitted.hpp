@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+/// What colours do the rays of one batch bring back? Whitted's recursion, level by level, on the device.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "device/shade/layout.h"
+#include "setka/tracer.hpp"
+
+namespace setka {
+
+struct RayCounts {
+    std::uint64_t secondary = 0;
+    std::uint64_t shadow = 0;
+};
+
+/// The passes over a batch, with the tables that all batches share.
+///
+/// Shadows of transparent things: DeviceScene sets SK_MASK_OPAQUE in the mask of an instance whose material
+/// lets nothing through. A shadow ray first asks for everything that the camera sees (SK_MASK_USER); what is
+/// not free is asked again for opaque things alone, and gets part of the light (SK_SHADOW_TRANSMISSION) where
+/// there is none. The second question knows no user bits, so an opaque thing hidden from the camera still
+/// darkens what is behind glass; only there.
+class WhittedPasses {
+  public:
+    WhittedPasses(Queue& queue, const DeviceScene& scene, const Structure& structure,
+                  const TraceOptions& trace, std::uint32_t max_depth);
+
+    /// Three floats a ray. `count` is raised by the rays that were traced for it.
+    [[nodiscard]] Buffer<float> colours(Buffer<Ray> rays, RayCounts& count) const;
+    /// The surfaces that `rays` meet first.
+    [[nodiscard]] Buffer<SkSurfacePoint> surfaces(const Buffer<Ray>& rays) const;
+
+  private:
+    struct Level;
+
+    [[nodiscard]] Buffer<SkSurfacePoint> surfaces(const Buffer<Ray>& rays,
+                                                  const Buffer<float>& colours) const;
+    void add_lights(const Buffer<Ray>& rays, const Buffer<SkSurfacePoint>& points,
+                    const Buffer<float>& colours, RayCounts& count) const;
+    [[nodiscard]] Buffer<float> gather(std::vector<Level> levels) const;
+
+    Queue& queue_;
+    const DeviceScene& scene_;
+    const Structure& structure_;
+    Tracer tracer_;         // what the camera sees
+    Tracer opaque_tracer_;  // what is opaque
+    std::uint32_t max_depth_;
+    float offset_;
+    SkBackground background_;
+    std::vector<SkLight> lights_;
+    bool has_transparent_;
+    Buffer<SkMaterial> materials_;
+};
+
+}  // namespace setka
