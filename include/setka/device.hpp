@@ -50,11 +50,13 @@ struct DeviceInfo {
 /// Why backends or devices are missing from enumerate_devices(), one sentence each; empty if nothing is missing.
 [[nodiscard]] std::vector<std::string> enumeration_notes();
 
-/// How scan, sort and reduce are laid out on the device. It never changes a result.
+/// How scan, sort and reduce are done on the device. It never changes a result.
 enum class PrimitiveShape {
-    Auto,    ///< Serial on a CPU, Group elsewhere
-    Serial,  ///< one work-item a group over a long run: fastest on CPUs, no barrier ever waits
-    Group,   ///< groups of work-items with local memory: for GPUs
+    Auto,      ///< Library where the backend has one, else Portable
+    Library,   ///< the vendor's library for scan and sort: CUB on CUDA; Unsupported elsewhere
+    Portable,  ///< setka's own kernels: Serial on a CPU, Group elsewhere
+    Serial,    ///< one work-item a group over a long run: fastest on CPUs, no barrier ever waits
+    Group,     ///< groups of work-items with local memory: for GPUs
 };
 
 /// How a device is opened. The defaults are right for use; the rest serves tests and measurements.

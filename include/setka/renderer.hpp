@@ -25,9 +25,9 @@ struct RenderOptions {
     std::uint32_t samples_per_axis = 1;  ///< 1 to 16: n * n primary rays a pixel, on a regular grid
     std::uint32_t max_depth = 6;         ///< 0 to 16: mirror and refraction rays after the primary one
     View view = View::Shaded;
-    TraceOptions trace;
+    TraceOptions trace{};
     /// Called after each batch with the share that is done, 0 to 1.
-    std::function<void(double)> progress;
+    std::function<void(double)> progress{};
 };
 
 /// What a render cost.

@@ -25,18 +25,18 @@ constexpr std::uint64_t most_cells = std::numeric_limits<std::int32_t>::max();
 std::uint32_t key_bits_of(const ::SetkaGridHeader& header) { return std::bit_width(header.cell_count - 1); }
 
 /// The most bytes that a build holds at a time: one line for each point where a stage has all its buffers.
-std::uint64_t peak_bytes_of(const Device& device, const ::SetkaGridHeader& header, std::uint64_t row_count) {
+std::uint64_t peak_bytes_of(Queue& queue, const ::SetkaGridHeader& header, std::uint64_t row_count) {
     const std::uint64_t n = header.triangle_count, r = row_count, p = header.reference_count, c = header.cell_count;
     const auto n32 = static_cast<std::uint32_t>(n), r32 = static_cast<std::uint32_t>(r), p32 = static_cast<std::uint32_t>(p);
     const std::uint64_t world = 9 * n * sizeof(float);
     const std::uint64_t row_starts = (n + 1) * word, row_triangles = r * word, row_offsets = (r + 1) * word;
     const std::uint64_t rows = row_starts + row_triangles + row_offsets;
     const std::uint64_t pairs = 2 * p * word;
-    return world + std::max({word + reduce_scratch_bytes(device, n32),
-                             n * word + row_starts + scan_scratch_bytes(device, n32),
-                             rows + r * word + scan_scratch_bytes(device, r32),
+    return world + std::max({word + reduce_scratch_bytes(queue.device(), n32),
+                             n * word + row_starts + scan_scratch_bytes(queue, n32),
+                             rows + r * word + scan_scratch_bytes(queue, r32),
                              rows + pairs,
-                             pairs + sort_scratch_bytes(device, p32, key_bits_of(header)),
+                             pairs + sort_scratch_bytes(queue, p32, key_bits_of(header)),
                              pairs + 2 * c * word});
 }
 
@@ -100,7 +100,7 @@ class UniformGridBuilder final : public GridBuilder {
         count_rows(queue, plan);
         count_pairs(queue, plan);
         plan.table_bytes_ = table_bytes_of(plan);
-        plan.peak_bytes_ = peak_bytes_of(queue.device(), plan.header_, plan.row_count_);
+        plan.peak_bytes_ = peak_bytes_of(queue, plan.header_, plan.row_count_);
         check_memory(queue.device(), plan, held_before);
         return plan;
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algo/scan.hpp"
 
-#include <array>
+#include <cstddef>
 #include <limits>
 #include <string>
 
@@ -21,8 +21,12 @@ void check_size(const char* name, std::size_t size, std::size_t needed) {
 
 }  // namespace
 
-std::uint64_t scan_scratch_bytes(const Device& device, std::uint32_t n) {
-    return (n == 0 ? 1 : primitive_layout(device, n).groups + std::uint64_t(1)) * sizeof(std::uint64_t);
+std::uint64_t scan_scratch_bytes(Queue& queue, std::uint32_t n) {
+    constexpr std::uint64_t total = sizeof(std::uint64_t);
+    if (n == 0) return total;
+    if (queue.device().options().primitives == PrimitiveShape::Library)
+        return total + queue.impl().library_scan_bytes(n);
+    return (primitive_layout(queue.device(), n).groups + std::uint64_t(1)) * sizeof(std::uint64_t);
 }
 
 Buffer<std::uint64_t> enqueue_exclusive_scan(Queue& queue, const Buffer<std::uint32_t>& counts, std::uint32_t n,
@@ -33,6 +37,12 @@ Buffer<std::uint64_t> enqueue_exclusive_scan(Queue& queue, const Buffer<std::uin
         auto total = queue.make_buffer<std::uint64_t>(1, "scan sums");
         queue.impl().fill(*total.memory(), 0, sizeof(std::uint64_t));
         queue.impl().fill(*offsets.memory(), 0, sizeof(std::uint32_t));
+        return total;
+    }
+    if (queue.device().options().primitives == PrimitiveShape::Library) {
+        auto total = queue.make_buffer<std::uint64_t>(1, "scan sums");
+        const auto scratch = queue.make_buffer<std::byte>(queue.impl().library_scan_bytes(n), "scan scratch");
+        queue.impl().library_scan(*counts.memory(), *offsets.memory(), *total.memory(), *scratch.memory(), n);
         return total;
     }
     const PrimitiveLayout layout = primitive_layout(queue.device(), n);

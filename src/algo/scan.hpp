@@ -9,7 +9,7 @@
 namespace setka {
 
 /// Bytes of scratch that a scan of n counts holds while it runs.
-[[nodiscard]] std::uint64_t scan_scratch_bytes(const Device& device, std::uint32_t n);
+[[nodiscard]] std::uint64_t scan_scratch_bytes(Queue& queue, std::uint32_t n);
 
 /// Enqueues offsets[i] = counts[0] + … + counts[i - 1] for i <= n, modulo 2^32; `offsets` has n + 1 elements. Returns a buffer
 /// whose last element is the total.

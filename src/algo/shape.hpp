@@ -28,6 +28,7 @@ struct PrimitiveLayout {
         const std::uint32_t groups = std::max({1u, wanted, divide_up(n, longest)});
         return {groups, 1, divide_up(n, groups)};
     }
+    // Also for what a library does not do: a Library device is a GPU.
     constexpr std::uint32_t elements = 16;
     return {divide_up(n, std::uint64_t(options.work_group_size) * elements), options.work_group_size, elements};
 }

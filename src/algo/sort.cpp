@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "algo/sort.hpp"
 
+#include <cstddef>
 #include <string>
 #include <utility>
 
@@ -28,12 +29,14 @@ Passes passes_of(const Device& device, std::uint32_t key_bits) {
 
 }  // namespace
 
-std::uint64_t sort_scratch_bytes(const Device& device, std::uint32_t n, std::uint32_t key_bits) {
-    const Passes passes = passes_of(device, key_bits);
-    if (n < 2 || passes.count == 0) return 0;
-    const std::uint32_t histogram = primitive_layout(device, n).groups << passes.bits;
-    return (2 * std::uint64_t(n) + histogram + histogram + 1) * sizeof(std::uint32_t) +
-           scan_scratch_bytes(device, histogram);
+std::uint64_t sort_scratch_bytes(Queue& queue, std::uint32_t n, std::uint32_t key_bits) {
+    if (n < 2 || key_bits == 0) return 0;
+    const std::uint64_t pairs = 2 * std::uint64_t(n) * sizeof(std::uint32_t);
+    if (queue.device().options().primitives == PrimitiveShape::Library)
+        return pairs + queue.impl().library_sort_bytes(n, key_bits);
+    const Passes passes = passes_of(queue.device(), key_bits);
+    const std::uint32_t histogram = primitive_layout(queue.device(), n).groups << passes.bits;
+    return pairs + (2 * std::uint64_t(histogram) + 1) * sizeof(std::uint32_t) + scan_scratch_bytes(queue, histogram);
 }
 
 void stable_sort_pairs(Queue& queue, Buffer<std::uint32_t>& keys, Buffer<std::uint32_t>& values, std::uint32_t n,
@@ -44,13 +47,24 @@ void stable_sort_pairs(Queue& queue, Buffer<std::uint32_t>& keys, Buffer<std::ui
         throw Error(ErrorCategory::InvalidArgument, "keys and values hold " + std::to_string(keys.size()) + " and " +
                                                         std::to_string(values.size()) + " elements; " +
                                                         std::to_string(n) + " are to be sorted");
+    if (n < 2 || key_bits == 0) return;
+    auto other_keys = queue.make_buffer<std::uint32_t>(n, "sort keys");
+    auto other_values = queue.make_buffer<std::uint32_t>(n, "sort values");
+    if (queue.device().options().primitives == PrimitiveShape::Library) {
+        const auto scratch =
+            queue.make_buffer<std::byte>(queue.impl().library_sort_bytes(n, key_bits), "sort scratch");
+        const backend::SortBuffers buffers{*keys.memory(), *values.memory(), *other_keys.memory(),
+                                           *other_values.memory(), *scratch.memory()};
+        if (queue.impl().library_sort(buffers, n, key_bits) == 1) {
+            std::swap(keys, other_keys);
+            std::swap(values, other_values);
+        }
+        return;
+    }
     const Passes passes = passes_of(queue.device(), key_bits);
-    if (n < 2 || passes.count == 0) return;
     const PrimitiveLayout layout = primitive_layout(queue.device(), n);
     const std::uint32_t digits = 1u << passes.bits;
     const std::uint32_t histogram_size = layout.groups * digits;
-    auto other_keys = queue.make_buffer<std::uint32_t>(n, "sort keys");
-    auto other_values = queue.make_buffer<std::uint32_t>(n, "sort values");
     const auto histogram = queue.make_buffer<std::uint32_t>(histogram_size, "sort histogram");
     const auto starts = queue.make_buffer<std::uint32_t>(histogram_size + std::size_t(1), "sort starts");
     for (std::uint32_t pass = 0; pass < passes.count; ++pass) {

@@ -9,7 +9,7 @@
 namespace setka {
 
 /// Bytes of scratch that a sort of n pairs holds while it runs, the second pair of buffers included.
-[[nodiscard]] std::uint64_t sort_scratch_bytes(const Device& device, std::uint32_t n, std::uint32_t key_bits);
+[[nodiscard]] std::uint64_t sort_scratch_bytes(Queue& queue, std::uint32_t n, std::uint32_t key_bits);
 
 /// Enqueues the stable sort of (keys[i], values[i]), i < n, by the lowest key_bits (0 to 32) of the keys; higher bits must be 0.
 /// The handles may be exchanged for other buffers of n elements.

@@ -32,6 +32,15 @@ class Memory {
     std::string name_;
 };
 
+/// Two pairs of buffers, the first with the pairs to sort, and scratch of library_sort_bytes.
+struct SortBuffers {
+    Memory& keys;
+    Memory& values;
+    Memory& other_keys;
+    Memory& other_values;
+    Memory& scratch;
+};
+
 class Queue {
   public:
     virtual ~Queue() = default;
@@ -49,6 +58,17 @@ class Queue {
     /// Launches from here on count towards this stage of the timing table.
     virtual void begin_stage(std::string_view stage) = 0;
     [[nodiscard]] virtual std::vector<StageTime> take_timings() = 0;
+
+    // A backend may answer scan and sort with a well-kept library (PrimitiveShape::Library); the results have one right answer.
+    // One without a library never resolves its options to that shape, and these are not called.
+
+    /// Bytes of scratch that library_scan needs, at least 1.
+    [[nodiscard]] virtual std::uint64_t library_scan_bytes(std::uint32_t n);
+    /// offsets[i] = sum of counts before i for i <= n, modulo 2^32; total (one u64) = the sum.
+    virtual void library_scan(Memory& counts, Memory& offsets, Memory& total, Memory& scratch, std::uint32_t n);
+    [[nodiscard]] virtual std::uint64_t library_sort_bytes(std::uint32_t n, std::uint32_t key_bits);
+    /// Stable sort by the lowest key_bits; returns 0 if the result is in the first pair of buffers, 1 if in the second.
+    [[nodiscard]] virtual int library_sort(const SortBuffers& buffers, std::uint32_t n, std::uint32_t key_bits);
 };
 
 class Device : public std::enable_shared_from_this<Device> {

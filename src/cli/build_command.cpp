@@ -69,8 +69,8 @@ void print_json(const Grid& grid, const Report& report) {
 void print_text(const std::string& name, const Grid& grid, const Report& report) {
     const SetkaGridHeader& header = grid.header();
     const double mtri_per_s = share(header.triangle_count, 1000) / report.time.wall_ms;
-    fmt::print("scene            {}: {} triangles, {} instances\n", name, grouped(header.triangle_count),
-               grouped(header.instance_count));
+    fmt::print("scene            {}: {} triangles, {} instance{}\n", name, grouped(header.triangle_count),
+               grouped(header.instance_count), header.instance_count == 1 ? "" : "s");
     fmt::print("device           {}\n", report.device);
     fmt::print("resolution       {} x {} x {}, cell size {:g}\n", header.dims[0], header.dims[1],
                header.dims[2], header.cell_size);

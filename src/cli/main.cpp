@@ -42,7 +42,7 @@ using setka::cli::Command;
 int run(int argc, char** argv) {
     CLI::App program{"setka traces rays through uniform grids, with the same bits on every device.", "setka"};
     program.set_version_flag("--version", std::string("setka ") + setka::version());
-    program.require_subcommand(1);
+    program.require_subcommand(0, 1);  // none is refused below: CLI11 would say so of a misspelt one too
     program.get_formatter()->column_width(34);
     program.footer("Exit codes: 0 ok, 1 a check failed, 2 bad usage, input or device.");
     const std::array commands{
@@ -53,6 +53,7 @@ int run(int argc, char** argv) {
     try {
         program.parse(argc, argv);
         const auto chosen = std::ranges::find_if(commands, [](const Command& c) { return c.app->parsed(); });
+        if (chosen == commands.end()) throw CLI::RequiredError("A subcommand");
         return chosen->run();
     } catch (const CLI::Success& request) {  // --help, --version
         return program.exit(request);

@@ -85,6 +85,19 @@ std::uint64_t Device::peak_memory_bytes() const noexcept { return impl_->peak_by
 void Device::reset_peak_memory() const noexcept { impl_->reset_peak(); }
 void Device::trim() const { impl_->trim(); }
 
+namespace {
+
+[[noreturn]] void no_library() {
+    throw Error(ErrorCategory::Internal, "a backend without a library of primitives was asked for one");
+}
+
+}  // namespace
+
+std::uint64_t backend::Queue::library_scan_bytes(std::uint32_t) { no_library(); }
+void backend::Queue::library_scan(Memory&, Memory&, Memory&, Memory&, std::uint32_t) { no_library(); }
+std::uint64_t backend::Queue::library_sort_bytes(std::uint32_t, std::uint32_t) { no_library(); }
+int backend::Queue::library_sort(const SortBuffers&, std::uint32_t, std::uint32_t) { no_library(); }
+
 void backend::Device::reserve(std::uint64_t size_bytes, std::string_view name) {
     const std::uint64_t budget = options().memory_budget_bytes;
     const std::uint64_t now = in_use_bytes_ += size_bytes;

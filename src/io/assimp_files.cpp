@@ -7,6 +7,8 @@
 #include <cstring>
 
 #include "io/file.hpp"
+#include "io/readers.hpp"
+#include "io/unicode.hpp"
 
 namespace setka::io::detail {
 
@@ -50,7 +52,9 @@ Assimp::IOStream* AssimpFiles::Open(const char* path, const char* mode) {
     if (std::strchr(mode, 'w') || std::strchr(mode, 'a')) return nullptr;
     if (file_ == path) return new MemoryStream(bytes_);
     try {
-        return new MemoryStream(read_file(path));
+        std::string bytes = read_file(path);
+        if (sidecars_ == Sidecars::Materials) bytes = filter_mtl(to_utf8(path, std::move(bytes)));
+        return new MemoryStream(std::move(bytes));
     } catch (const Error&) {
         return nullptr;  // what assimp expects of a file that is not there
     }

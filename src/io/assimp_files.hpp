@@ -10,11 +10,14 @@
 
 namespace setka::io::detail {
 
+/// What lies beside the file: MTL files, which are filtered, or buffers, which are bytes.
+enum class Sidecars { Materials, Buffers };
+
 class AssimpFiles final : public Assimp::IOSystem {
   public:
     /// `bytes` stand for `file`, whatever the disk says.
-    AssimpFiles(const std::filesystem::path& file, std::string bytes)
-        : file_(file.string()), bytes_(std::move(bytes)) {}
+    AssimpFiles(const std::filesystem::path& file, std::string bytes, Sidecars sidecars)
+        : file_(file.string()), bytes_(std::move(bytes)), sidecars_(sidecars) {}
 
     [[nodiscard]] bool Exists(const char* path) const override;
     [[nodiscard]] char getOsSeparator() const override { return '/'; }
@@ -24,6 +27,7 @@ class AssimpFiles final : public Assimp::IOSystem {
   private:
     std::string file_;
     std::string bytes_;
+    Sidecars sidecars_;
 };
 
 }  // namespace setka::io::detail

@@ -90,8 +90,10 @@ ImportedMaterial convert_mtl(const aiMaterial& source, const std::filesystem::pa
     ImportedMaterial imported;
     Material& m = imported.material;
     m.name = name_of(source);
-    // What assimp makes up for faces without a material; ours is as good.
-    if (m.name == AI_DEFAULT_MATERIAL_NAME) return imported;
+    const float exponent = number(source, AI_MATKEY_SHININESS).value_or(0);
+    // Faces without a material, or with one that no MTL file defines: filter_mtl gives those an exponent
+    // above 0.
+    if (m.name == AI_DEFAULT_MATERIAL_NAME || exponent <= 0) return imported;
     imported.has_colour = true;
     m.diffuse = at_most_one(colour(source, AI_MATKEY_COLOR_DIFFUSE).value_or(Colour{m.diffuse}).rgb);
     if (const auto mean = texture_colour(source, aiTextureType_DIFFUSE, nullptr, folder)) {
@@ -100,7 +102,7 @@ ImportedMaterial convert_mtl(const aiMaterial& source, const std::filesystem::pa
     }
     m.specular = at_most_one(colour(source, AI_MATKEY_COLOR_SPECULAR).value_or(Colour{}).rgb);
     m.emission = colour(source, AI_MATKEY_COLOR_EMISSIVE).value_or(Colour{}).rgb;
-    m.shininess = clamped(number(source, AI_MATKEY_SHININESS).value_or(m.shininess), 1, 65536, 32);
+    m.shininess = clamped(exponent, 1, 65536, 32);
     m.transparency = 1 - clamped(number(source, AI_MATKEY_OPACITY).value_or(1), 0, 1, 1);
     m.transmission = at_most_one(colour(source, AI_MATKEY_COLOR_TRANSPARENT).value_or(Colour{{1, 1, 1}}).rgb);
     const float index = number(source, AI_MATKEY_REFRACTI).value_or(1);

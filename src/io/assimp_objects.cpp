@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/exact_math.hpp"
+
 namespace setka::io::detail {
 
 namespace {
@@ -34,20 +36,19 @@ aiVector3D unit(const aiVector3D& v) {
                                                : aiVector3D();
 }
 
-std::optional<Camera> place(const aiCamera& source, const aiMatrix4x4& world) {
-    if (source.mOrthographicWidth > 0) return std::nullopt;
+/// A camera at the origin of its node that looks along -z, as glTF has it. aiCamera repeats the node's
+/// translation in its own position, so that is left alone.
+std::optional<Camera> place(const aiMatrix4x4& world, double vertical_fov) {
     const aiMatrix3x3 linear(world);
-    const aiVector3D eye = world * source.mPosition;
-    const aiVector3D view = unit(linear * source.mLookAt), up = unit(linear * source.mUp);
-    const double aspect = source.mAspect > 0 && std::isfinite(source.mAspect) ? source.mAspect : 1;
-    const double vertical =
-        2 * std::atan(std::tan(double(source.mHorizontalFOV) / 2) / aspect) * 180 / 3.14159265358979323846;
+    const aiVector3D eye = world * aiVector3D(0, 0, 0);
+    const aiVector3D view = unit(linear * aiVector3D(0, 0, -1)), up = unit(linear * aiVector3D(0, 1, 0));
     Camera camera;
     camera.eye = to_float3(eye);
-    camera.target = to_float3(eye + view);
+    // As far away as the origin: one unit would be rounded away beside large coordinates.
+    const float distance = std::max(1.0f, std::sqrt(eye.SquareLength()));
+    camera.target = to_float3(eye + view * distance);
     camera.up = to_float3(up);
-    // Rounded, since the last bits of tan and atan differ between machines.
-    camera.vertical_fov_degrees = static_cast<float>(std::round(vertical * 1e4) / 1e4);
+    camera.vertical_fov_degrees = static_cast<float>(vertical_fov * 180 / exact::pi);
     const bool usable = is_usable(eye) && view.SquareLength() > 0 && (view ^ up).SquareLength() > 1e-8f &&
                         camera.target != camera.eye && camera.vertical_fov_degrees > 0 &&
                         camera.vertical_fov_degrees < 180;
@@ -75,11 +76,10 @@ double total_brightness(const Scene& scene) {
 
 }  // namespace
 
-std::optional<Camera> take_camera(const aiScene& source) {
-    for (unsigned i = 0; i < source.mNumCameras; ++i) {
-        const aiCamera& camera = *source.mCameras[i];
-        if (const auto placed = place(camera, world_transform(source, camera.mName))) return placed;
-    }
+std::optional<Camera> take_camera(const aiScene& source, std::span<const double> vertical_fovs) {
+    for (unsigned i = 0; i < source.mNumCameras && i < vertical_fovs.size(); ++i)
+        if (const auto placed = place(world_transform(source, source.mCameras[i]->mName), vertical_fovs[i]))
+            return placed;
     return std::nullopt;
 }
 

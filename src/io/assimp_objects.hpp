@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "setka/scene.hpp"
 
@@ -10,8 +11,9 @@ struct aiScene;
 
 namespace setka::io::detail {
 
-/// The first perspective camera, placed by its node; nothing if none can be used.
-[[nodiscard]] std::optional<Camera> take_camera(const aiScene& source);
+/// The first perspective camera of a glTF scene, placed by its node; nothing if none can be used.
+/// `vertical_fovs` holds the angle of each camera in radians: assimp 5.2 keeps it only as angle times aspect.
+[[nodiscard]] std::optional<Camera> take_camera(const aiScene& source, std::span<const double> vertical_fovs);
 /// Adds point lights (spots among them) and directional lights, placed by their nodes. Physical units have no
 /// meaning in Whitted shading, so lights that are too bright for it at the middle of the scene are dimmed
 /// together.

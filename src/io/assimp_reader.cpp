@@ -2,14 +2,13 @@
 /// How do OBJ and glTF files become scenes? assimp reads them without any of its own post-processing; meshes,
 /// nodes, cameras and lights are taken over here. Triangles, welding and normals are made as for every other
 /// format.
-#include <assimp/camera.h>
-#include <assimp/light.h>
 #include <assimp/mesh.h>
 #include <assimp/scene.h>
 
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "io/assimp_files.hpp"
 #include "io/assimp_material.hpp"
@@ -24,8 +23,9 @@ namespace {
 
 enum class Source { Obj, Gltf };
 
-const aiScene& import(Assimp::Importer& importer, const std::filesystem::path& file, std::string bytes) {
-    importer.SetIOHandler(new AssimpFiles(file, std::move(bytes)));  // the importer owns it
+const aiScene& import(Assimp::Importer& importer, const std::filesystem::path& file, std::string bytes,
+                      Sidecars sidecars) {
+    importer.SetIOHandler(new AssimpFiles(file, std::move(bytes), sidecars));  // the importer owns it
     const aiScene* scene = nullptr;
     try {
         scene = importer.ReadFile(file.string(), 0);
@@ -34,7 +34,12 @@ const aiScene& import(Assimp::Importer& importer, const std::filesystem::path& f
     } catch (const std::exception& error) {
         fail_read(file, std::string("malformed: ") + error.what());
     }
-    if (!scene) fail_read(file, std::string("malformed: ") + importer.GetErrorString());
+    if (!scene) {
+        const std::string reason = importer.GetErrorString();
+        // What is left of a mesh after assimp dropped every triangle; empty meshes never get here.
+        const bool dropped = reason.find("has no faces") != reason.npos;
+        fail_read(file, "malformed: " + reason + (dropped ? ": an index is out of range" : ""));
+    }
     if (!scene->mRootNode) fail_read(file, "it holds no node");
     return *scene;
 }
@@ -79,12 +84,9 @@ class SceneBuilder {
             const aiMaterial& material = *source_.mMaterials[i];
             imported_.push_back(kind_ == Source::Obj ? convert_mtl(material, file_.parent_path())
                                                      : convert_gltf(material, source_, file_.parent_path()));
-            scene_.materials.push_back(imported_.back().material);
         }
         for (unsigned i = 0; i < source_.mNumMeshes; ++i) add_mesh(*source_.mMeshes[i]);
         add_instances();
-        scene_.camera = take_camera(source_);
-        take_lights(source_, scene_);
         return std::move(scene_);
     }
 
@@ -109,14 +111,18 @@ class SceneBuilder {
         placed_.push_back(placed);
     }
 
-    /// The number of the material; a copy in the mean vertex colour where the material has no colour of its
-    /// own.
+    /// The number of the material in the scene, where each is listed once it is used; a copy in the mean
+    /// vertex colour where the material has no colour of its own.
     std::uint32_t material_of(unsigned index, const std::optional<Float3>& colour) {
-        Material material = index < imported_.size() ? imported_[index].material : Material{};
-        if (index < imported_.size() && (imported_[index].has_colour || !colour)) return index;
-        if (colour) material.diffuse = *colour;
+        const bool known = index < imported_.size();
+        const bool tinted = colour && !(known && imported_[index].has_colour);
+        if (known && !tinted && numbers_.contains(index)) return numbers_[index];
+        Material material = known ? imported_[index].material : Material{};
+        if (tinted) material.diffuse = *colour;
+        const auto number = static_cast<std::uint32_t>(scene_.materials.size());
         scene_.materials.push_back(std::move(material));
-        return static_cast<std::uint32_t>(scene_.materials.size() - 1);
+        if (known && !tinted) numbers_[index] = number;
+        return number;
     }
 
     void add_instances() {
@@ -160,6 +166,7 @@ class SceneBuilder {
     Source kind_;
     Scene scene_;
     std::vector<ImportedMaterial> imported_;
+    std::map<unsigned, std::uint32_t> numbers_;  ///< of imported materials in the scene
     std::vector<PlacedMesh> placed_;
 };
 
@@ -167,25 +174,29 @@ class SceneBuilder {
 
 Scene read_obj(const std::filesystem::path& file, std::string bytes) {
     Assimp::Importer importer;
-    const aiScene& scene = import(importer, file, filter_obj(file, to_utf8(file, std::move(bytes))));
+    const aiScene& scene =
+        import(importer, file, filter_obj(file, to_utf8(file, std::move(bytes))), Sidecars::Materials);
     return SceneBuilder(file, scene, Source::Obj).build();
 }
 
 Scene read_gltf(const std::filesystem::path& file, std::string bytes) {
     CheckedGltf checked = check_gltf(file, bytes);
+    if (checked.triangle_count == 0) fail_read(file, no_triangle);
     bytes = {};
     Assimp::Importer importer;
-    const aiScene& scene = import(importer, file, std::move(checked.bytes));
-    std::uint64_t expected = 0, found = 0;
-    for (const std::uint64_t count : checked.triangle_counts) expected += count;
+    const aiScene& scene = import(importer, file, std::move(checked.bytes), Sidecars::Buffers);
+    std::uint64_t found = 0;
     for (unsigned i = 0; i < scene.mNumMeshes; ++i)
         for (unsigned f = 0; f < scene.mMeshes[i]->mNumFaces; ++f)
             found += scene.mMeshes[i]->mFaces[f].mNumIndices >= 3;
     // assimp leaves triangles out whose indices are out of range.
-    if (found != expected)
-        fail_read(file, "only " + std::to_string(found) + " of " + std::to_string(expected) +
+    if (found != checked.triangle_count)
+        fail_read(file, "only " + std::to_string(found) + " of " + std::to_string(checked.triangle_count) +
                             " triangles can be used: an index is out of range");
-    return SceneBuilder(file, scene, Source::Gltf).build();
+    Scene result = SceneBuilder(file, scene, Source::Gltf).build();
+    result.camera = take_camera(scene, checked.vertical_fovs);
+    take_lights(scene, result);
+    return result;
 }
 
 }  // namespace setka::io::detail

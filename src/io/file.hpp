@@ -16,6 +16,9 @@ namespace setka::io::detail {
 /// The largest file that is read into memory.
 inline constexpr std::uint64_t max_file_bytes = std::uint64_t(4) << 30;
 
+/// Why a file of points, of lines or of nothing is refused.
+inline constexpr std::string_view no_triangle = "it has no triangle: points and lines are not rendered";
+
 /// `text` with control characters replaced and cut to a length that fits a one-line message.
 [[nodiscard]] std::string one_line(std::string_view text, std::size_t max_length = 200);
 

@@ -98,9 +98,12 @@ class GltfChecker {
                 (void)target(json_["images"][i], "bufferView", "bufferViews");
         drop_dangling_textures(json_);
         CheckedGltf checked;
-        for (std::size_t i = 0; i < size("meshes"); ++i)
-            for (const Json& primitive : json_["meshes"][i].value("primitives", Json::array()))
-                checked.triangle_counts.push_back(check_primitive(primitive, i));
+        for (std::size_t i = 0; i < size("meshes"); ++i) check_mesh(json_["meshes"][i], i, checked);
+        for (std::size_t i = 0; i < size("cameras"); ++i) {
+            const Json& camera = json_["cameras"][i];
+            // Absent or orthographic: 0, which is no angle.
+            checked.vertical_fovs.push_back(camera.value("perspective", Json::object()).value("yfov", 0.0));
+        }
         check_nodes();
         checked.bytes = close_container(json_, container_);
         return checked;
@@ -220,6 +223,19 @@ class GltfChecker {
         fail_read(file_, "malformed glTF: the type of " + what);
     }
 
+    /// Primitives without triangles (points, lines, nothing) are dropped: assimp refuses files with some of
+    /// them.
+    void check_mesh(Json& mesh, std::size_t index, CheckedGltf& checked) const {
+        Json kept = Json::array();
+        for (const Json& primitive : mesh.value("primitives", Json::array())) {
+            const std::uint64_t triangles = check_primitive(primitive, index);
+            if (triangles == 0) continue;
+            checked.triangle_count += triangles;
+            kept.push_back(primitive);
+        }
+        mesh["primitives"] = kept;
+    }
+
     /// Checks what a primitive refers to; the triangles that it holds.
     [[nodiscard]] std::uint64_t check_primitive(const Json& primitive, std::size_t mesh) const {
         const std::string what = "a primitive of mesh " + std::to_string(mesh);
@@ -252,7 +268,10 @@ class GltfChecker {
     void check_nodes() {
         std::vector<std::size_t> parents(size("nodes"), 0);
         for (std::size_t i = 0; i < parents.size(); ++i) {
-            const Json& node = json_["nodes"][i];
+            Json& node = json_["nodes"][i];
+            // assimp ties cameras and lights to nodes by name.
+            if (node.contains("camera") || node.contains("extensions"))
+                node["name"] = "node " + std::to_string(i);
             if (node.contains("mesh")) (void)target(node, "mesh", "meshes");
             if (node.contains("camera")) (void)target(node, "camera", "cameras");
             for (const Json& child : node.value("children", Json::array())) {

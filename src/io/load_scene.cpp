@@ -72,8 +72,7 @@ Scene read(const std::filesystem::path& file) {
 Scene load_scene(const std::filesystem::path& file) {
     try {
         Scene scene = read(file);
-        if (scene.triangle_count() == 0)
-            fail_read(file, "it has no triangle: points and lines are not rendered");
+        if (scene.triangle_count() == 0) fail_read(file, detail::no_triangle);
         scene.validate();
         return scene;
     } catch (const Error& error) {

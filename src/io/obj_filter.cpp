@@ -3,6 +3,8 @@
 /// that were checked. assimp 5.2 refuses faces whose texture coordinates are missing, which are common and
 /// never needed here; and it cannot say in which line an index is wrong.
 #include <algorithm>
+#include <cmath>
+#include <set>
 
 #include "io/file.hpp"
 #include "io/readers.hpp"
@@ -13,6 +15,10 @@ namespace setka::io::detail {
 namespace {
 
 constexpr std::string_view kept_as_they_are[] = {"v", "vn", "o", "g", "usemtl", "mtllib"};
+
+/// assimp compares the name at each use of a material with those before: this many comparisons take it some
+/// seconds.
+constexpr std::uint64_t max_name_comparisons = 100'000'000;
 
 /// A backslash at the end of a line joins it with the next.
 std::string join_lines(std::string text) {
@@ -36,6 +42,7 @@ class ObjFilter {
             total_normals_ += keyword == "vn";
         }
         output_.reserve(text_.size());
+        output_ = "# reduced to what is read\n";  // and longer than what assimp takes for a file
         for (TextCursor lines(text_); !lines.at_end();) {
             const std::string_view line = lines.line();
             ++line_number_;
@@ -43,6 +50,15 @@ class ObjFilter {
             const std::string_view keyword = words.word();
             vertices_ += keyword == "v";
             normals_ += keyword == "vn";
+            if (keyword == "usemtl") {
+                TextCursor ahead = words;
+                materials_.insert(name(ahead));
+                name_comparisons_ += materials_.size();
+                if (name_comparisons_ > max_name_comparisons)
+                    fail("too many changes (" + std::to_string(material_changes_) +
+                         ") between too many materials (" + std::to_string(materials_.size()) + ")");
+                ++material_changes_;
+            }
             if (keyword == "f") {
                 add_face(words);
             } else if (std::ranges::find(kept_as_they_are, keyword) != std::end(kept_as_they_are)) {
@@ -51,6 +67,7 @@ class ObjFilter {
                 output_ += '\n';
             }
         }
+        if (!has_face_) fail_read(file_, no_triangle);
         return std::move(output_);
     }
 
@@ -60,10 +77,13 @@ class ObjFilter {
     }
 
     /// The numbers of a vertex, single blanks between them: assimp counts words by its own rules.
-    [[nodiscard]] static std::string number_words(TextCursor& words) {
+    [[nodiscard]] std::string number_words(TextCursor& words) const {
         std::string numbers;
-        for (std::string_view word = words.word(); !word.empty(); word = words.word())
+        for (std::string_view word = words.word(); !word.empty(); word = words.word()) {
+            if (const std::optional<float> value = parse_float(word); value && !std::isfinite(*value))
+                fail("'" + one_line(word, 40) + "' is not finite");
             numbers.append(numbers.empty() ? "" : " ").append(word);
+        }
         return numbers;
     }
 
@@ -109,12 +129,17 @@ class ObjFilter {
         face_ = "f";
         corner_count_ = 0;
         for (std::string_view word = words.word(); !word.empty(); word = words.word()) add_corner(word);
-        if (corner_count_ >= 3) output_.append(face_).append("\n");
+        if (corner_count_ < 3) return;
+        has_face_ = true;
+        output_.append(face_).append("\n");
     }
 
     const std::filesystem::path& file_;
     std::string_view text_;
     std::string output_, face_;
+    std::set<std::string, std::less<>> materials_;
+    std::uint64_t name_comparisons_ = 0, material_changes_ = 0;
+    bool has_face_ = false;
     std::uint64_t line_number_ = 0, corner_count_ = 0;
     std::uint64_t vertices_ = 0, normals_ = 0, total_vertices_ = 0, total_normals_ = 0;
 };

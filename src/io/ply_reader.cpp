@@ -240,8 +240,9 @@ std::vector<RawMesh> read_ply(const std::filesystem::path& file, std::string_vie
         has_faces |= element.name == "face" || element.name == "tristrips";
     }
     if (!has_vertices || !has_faces)
-        fail_read(file,
-                  "no triangles: the PLY header has no element 'vertex', or none of 'face' and 'tristrips'");
+        fail_read(
+            file,
+            "it has no triangle: the PLY header has no element 'vertex', or none of 'face' and 'tristrips'");
     for (const PlyElement& element : header.elements) {
         numbers.enter(element);
         if (element.name == "vertex") {

@@ -11,7 +11,7 @@ namespace setka::io::detail {
 namespace {
 
 /// Above this many corners a concave polygon becomes a fan: cutting ears takes quadratic to cubic time.
-constexpr std::size_t max_ear_corners = 512;
+constexpr std::size_t max_ear_corners = 256;
 
 struct Point2 {
     double x, y;

@@ -31,10 +31,14 @@ namespace setka::io::detail {
 /// Throws InvalidData, naming the line, for a face that is malformed or whose vertex does not exist.
 [[nodiscard]] std::string filter_obj(const std::filesystem::path& file, std::string text);
 
+/// The statements of an MTL text that setka reads; what is malformed is left out, as a missing file would be.
+[[nodiscard]] std::string filter_mtl(std::string_view text);
+
 /// A glTF file that was checked: bytes that assimp can be trusted with, and what it must make of them.
 struct CheckedGltf {
-    std::string bytes;                           ///< the file again, reduced to what setka reads
-    std::vector<std::uint64_t> triangle_counts;  ///< one per primitive of all meshes, in order
+    std::string bytes;                  ///< the file again, reduced to what setka reads
+    std::uint64_t triangle_count = 0;   ///< of all meshes, each once
+    std::vector<double> vertical_fovs;  ///< of each camera in radians; 0 for one without perspective
 };
 /// Throws InvalidData for wrong types, references, ranges and unsupported extensions.
 [[nodiscard]] CheckedGltf check_gltf(const std::filesystem::path& file, const std::string& bytes);

@@ -67,9 +67,14 @@ std::optional<Float3> mean_colour(std::span<const unsigned char> encoded) {
     OIIO::Filesystem::IOMemReader memory(const_cast<unsigned char*>(encoded.data()), encoded.size());
     OIIO::ImageSpec config;
     config["oiio:UnassociatedAlpha"] = 1;
-    const auto input = OIIO::ImageInput::open(png ? "memory.png" : "memory.jpg", &config, &memory);
+    // Created by format first: ImageInput::open() would look for a file of this name.
+    const auto input = OIIO::ImageInput::create(png ? "png" : "jpeg");
+    OIIO::ImageSpec spec;
     if (!input) (void)OIIO::geterror();
-    return input ? mean_of(*input) : std::nullopt;
+    if (!input || !input->set_ioproxy(&memory) || !input->open("memory", spec, config)) return {};
+    const std::optional<Float3> mean = mean_of(*input);
+    input->close();  // before the bytes go away
+    return mean;
 }
 
 }  // namespace setka::io::detail

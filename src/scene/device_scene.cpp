@@ -63,7 +63,8 @@ HostTables tables_of(const Scene& scene) {
         record.first_vertex = places[instance.mesh].first_vertex;
         record.material = instance.material;
         record.mask = instance.mask & ~SETKA_MASK_OPAQUE;
-        if (!(scene.materials[instance.material].transparency > 0)) record.mask |= SETKA_MASK_OPAQUE;
+        // An instance that the user's masks hide stays hidden from every query.
+        if (record.mask != 0 && !(scene.materials[instance.material].transparency > 0)) record.mask |= SETKA_MASK_OPAQUE;
         record.flags = mesh.normals.empty() ? 0 : SETKA_INSTANCE_HAS_NORMALS;
         tables.starts.push_back(first_triangle);
         tables.instances.push_back(record);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "core/exact_math.hpp"
 #include "scene/shapes.hpp"
@@ -58,42 +59,52 @@ class Stage {
     return to_float3(to_glm(a) * (1 - t) + to_glm(b) * t);
 }
 
+/// The colour at t of stops that are evenly spread from 0 to 1.
+[[nodiscard]] Float3 ramp(std::span<const Float3> stops, double t) {
+    const auto last = static_cast<int>(stops.size()) - 1;
+    const double position = std::clamp(t, 0.0, 1.0) * last;
+    const int stop = std::min(static_cast<int>(position), last - 1);
+    const auto at = static_cast<std::size_t>(stop);
+    return mix(stops[at], stops[at + 1], position - stop);
+}
+
 /// Deep water to foam to sand: t from 0 to 1.
 [[nodiscard]] Float3 wave_colour(double t) {
-    constexpr Float3 stops[] = {{0.035f, 0.11f, 0.19f},
-                                {0.04f, 0.27f, 0.36f},
-                                {0.25f, 0.55f, 0.55f},
-                                {0.80f, 0.76f, 0.62f},
-                                {0.86f, 0.50f, 0.26f}};
-    const double position = std::clamp(t, 0.0, 1.0) * 4;
-    const int stop = std::min(static_cast<int>(position), 3);
-    return mix(stops[stop], stops[stop + 1], position - stop);
+    constexpr Float3 stops[] = {{0.045f, 0.15f, 0.24f},
+                                {0.05f, 0.31f, 0.39f},
+                                {0.27f, 0.56f, 0.55f},
+                                {0.82f, 0.76f, 0.60f},
+                                {0.88f, 0.50f, 0.24f}};
+    return ramp(stops, t);
 }
 
-/// All hues in turn, t from 0 to 1: three cosines a third of a period apart.
+/// Coral to amber to raspberry to violet: t from 0 to 1.
 [[nodiscard]] Float3 bead_colour(double t) {
-    const auto channel = [&](double phase) {
-        return static_cast<float>(0.45 + 0.4 * exact::sin_cos(2 * exact::pi * (t + phase)).cos);
-    };
-    return {channel(0), channel(2.0 / 3), channel(1.0 / 3)};
+    constexpr Float3 stops[] = {{0.80f, 0.16f, 0.10f},
+                                {0.90f, 0.42f, 0.08f},
+                                {0.92f, 0.66f, 0.16f},
+                                {0.80f, 0.16f, 0.30f},
+                                {0.36f, 0.16f, 0.62f}};
+    return ramp(stops, t);
 }
 
-/// How high the column at (x, z) reaches: level around the centre, then waves that grow with the distance.
+/// How high the column at (x, z) reaches: level around the centre, then waves that grow with the distance and
+/// stay below `highest_column`.
+constexpr double highest_column = 3.4;
 [[nodiscard]] double wave_height(double x, double z) {
     const double distance = std::sqrt(x * x + z * z);
-    const double beyond = std::max(distance - 4.2, 0.0);
-    const double growth = beyond * beyond / (beyond + 2.5);
-    const double ripple = exact::sin_cos(1.25 * distance - 0.35 * x).sin;
-    const double behind = std::clamp(0.5 - z / 12, 0.12, 1.0);  // the camera looks over the columns in front
-    return growth * (0.55 + 0.3 * ripple) * behind;
+    const double beyond = std::max(distance - 4.4, 0.0);
+    const double growth = highest_column * beyond / (beyond + 3.5);
+    const double ripple = exact::sin_cos(1.3 * distance - 0.5 * x).sin;
+    const double behind = std::clamp(0.62 - z / 11, 0.1, 1.0);  // the camera looks over the columns in front
+    return growth * (0.72 + 0.28 * ripple) * behind;
 }
 
 void add_columns(Stage& stage) {
     constexpr int per_side = 44;
     constexpr double pitch = 0.5;
     constexpr int tones = 24;
-    constexpr float half_height = 3;
-    constexpr double highest = 3.2;
+    constexpr float half_height = 1;
     const std::uint32_t mesh = stage.add(shapes::rounded_box({0.235f, half_height, 0.235f}, 0.05, 2));
     std::uint32_t first_material = 0;
     for (int tone = 0; tone < tones; ++tone) {
@@ -113,7 +124,7 @@ void add_columns(Stage& stage) {
             const double height = wave_height(x, z);
             const int checker = (i + j) % 2;  // a hint of a chessboard where the field is level
             const int tone =
-                std::clamp(static_cast<int>(height / highest * tones) + 3 * checker, 0, tones - 1);
+                std::clamp(static_cast<int>(height / highest_column * tones) + 3 * checker, 0, tones - 1);
             stage.place(mesh, first_material + static_cast<std::uint32_t>(tone),
                         {.position = {x, height - half_height, z}});
         }
@@ -146,7 +157,7 @@ void add_bodies(Stage& stage) {
 
     const std::uint32_t ball = stage.add(shapes::sphere(48));
     stage.place(ball, stage.add(mirror), {.scale = 1.4, .position = {-1.5, 1.4, -1.1}});
-    stage.place(ball, stage.add(glass), {.scale = 0.85, .position = {0.55, 0.85, 1.7}});
+    stage.place(ball, stage.add(glass), {.scale = 0.85, .position = {0.35, 0.85, 1.75}});
     const std::uint32_t knot = stage.add(shapes::torus_knot({.p = 2,
                                                              .q = 3,
                                                              .radius = 0.85,
@@ -159,14 +170,14 @@ void add_bodies(Stage& stage) {
 }
 
 void add_beads(Stage& stage) {
-    constexpr int count = 150;
+    constexpr int count = 90;
     constexpr int hues = 30;
     const std::uint32_t mesh = stage.add(shapes::sphere(8));
     std::uint32_t first_material = 0;
     for (int hue = 0; hue < hues; ++hue) {
         Material material;
         material.name = "bead hue " + std::to_string(hue);
-        material.diffuse = bead_colour(static_cast<double>(hue) / hues);
+        material.diffuse = bead_colour(static_cast<double>(hue) / (hues - 1));
         material.specular = {0.6f, 0.6f, 0.6f};
         material.shininess = 256;
         material.reflectivity = 0.12f;
@@ -174,12 +185,14 @@ void add_beads(Stage& stage) {
         if (hue == 0) first_material = index;
     }
     for (int k = 0; k < count; ++k) {
+        // Around everything on the floor, then up and inwards.
         const double t = static_cast<double>(k) / (count - 1);
-        const auto [sin, cos] = exact::sin_cos(2 * exact::pi * (2.6 * t) + 2.2);
-        const double radius = 3.9 - 2.6 * t;
-        const double height = 0.16 + 4.3 * t * t * (1.35 - 0.35 * t);
+        const auto [sin, cos] = exact::sin_cos((168 - 410 * t) * degrees);
+        const double rise = std::max(t - 0.3, 0.0) / 0.7;
+        const double radius = 4.05 - 1.5 * rise * rise;
+        const double height = 0.15 + 3.8 * rise * rise * (3 - 2 * rise);
         stage.place(mesh, first_material + static_cast<std::uint32_t>(k * hues / count),
-                    {.scale = 0.145 - 0.05 * t, .position = {radius * cos, height, radius * sin - 0.4}});
+                    {.scale = 0.15 - 0.06 * t, .position = {radius * cos, height, radius * sin - 0.2}});
     }
 }
 
@@ -192,14 +205,14 @@ Scene make_showcase() {
     add_beads(stage);
 
     Scene scene = std::move(stage.scene);
-    scene.directional_lights.push_back({{0.8f, -1.0f, -0.25f}, {0.95f, 0.86f, 0.74f}});
-    scene.point_lights.push_back({{6, 6, 7}, {0.16f, 0.2f, 0.28f}, 9});
+    scene.directional_lights.push_back({{0.8f, -1.0f, -0.3f}, {1.05f, 0.95f, 0.8f}});
+    scene.point_lights.push_back({{5, 6, 8}, {0.2f, 0.24f, 0.32f}, 9});
     Background& sky = scene.background;
-    sky.zenith = {0.16f, 0.30f, 0.55f};
-    sky.horizon = {0.93f, 0.80f, 0.68f};
+    sky.zenith = {0.05f, 0.20f, 0.52f};
+    sky.horizon = {0.95f, 0.79f, 0.63f};
     sky.ground = {0.10f, 0.12f, 0.15f};
-    sky.ambient = 0.32f;
-    scene.camera = Camera{{3.6f, 3.9f, 9.6f}, {0.15f, 1.15f, -0.6f}, {0, 1, 0}, 38};
+    sky.ambient = 0.4f;
+    scene.camera = Camera{{3.3f, 3.7f, 9.4f}, {0.1f, 1.05f, -0.4f}, {0, 1, 0}, 36};
     return scene;
 }
 

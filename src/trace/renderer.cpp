@@ -201,7 +201,7 @@ Image Renderer::render(Queue& queue, const DeviceScene& scene, const Structure& 
         else render_normals(picture, passes);
     } else {
         TraceOptions trace = options_.trace;
-        trace.mask &= SK_MASK_USER;
+        trace.mask = camera_mask(trace.mask);
         render_measure(picture, structure, Tracer(trace), options_.view, statistics_);
     }
     statistics_.wall_ms =

@@ -38,6 +38,10 @@ std::uint32_t items(const Buffer<Ray>& rays) { return static_cast<std::uint32_t>
 
 }  // namespace
 
+std::uint32_t camera_mask(std::uint32_t mask) {
+    return mask == SETKA_MASK_OPAQUE ? mask : mask & ~SETKA_MASK_OPAQUE;
+}
+
 /// What is kept of a level for the way up.
 struct WhittedPasses::Level {
     Buffer<float> colours;
@@ -50,8 +54,8 @@ WhittedPasses::WhittedPasses(Queue& queue, const DeviceScene& scene, const Struc
     : queue_(queue),
       scene_(scene),
       structure_(structure),
-      tracer_(with_mask(trace, trace.mask & SK_MASK_USER)),
-      opaque_tracer_(with_mask(trace, SK_MASK_OPAQUE)),
+      tracer_(with_mask(trace, camera_mask(trace.mask))),
+      opaque_tracer_(with_mask(trace, SETKA_MASK_OPAQUE)),
       max_depth_(max_depth),
       // A floor under the offset that grows with the triangle: a small triangle's neighbour may be as large
       // as the scene.
@@ -131,7 +135,8 @@ Buffer<float> WhittedPasses::colours(Buffer<Ray> rays, RayCounts& count) const {
         }
         if (total == 0) break;
         if (total > most_level_rays)
-            throw Error(ErrorCategory::OutOfMemory, std::to_string(total) + " rays go on from one batch at depth " +
+            throw Error(ErrorCategory::OutOfMemory, std::to_string(total) +
+                                                        " rays go on from one batch at depth " +
                                                         std::to_string(depth) + "; at most " +
                                                         std::to_string(most_level_rays) + " can be numbered");
         count.secondary += total;

@@ -15,13 +15,16 @@ struct RayCounts {
     std::uint64_t shadow = 0;
 };
 
+/// The query mask for what the camera sees: without the opaque bit, which would let it see what the other
+/// bits hide, unless opaque things are all that is asked for.
+[[nodiscard]] std::uint32_t camera_mask(std::uint32_t mask);
+
 /// The passes over a batch, with the tables that all batches share.
 ///
-/// Shadows of transparent things: DeviceScene sets SK_MASK_OPAQUE in the mask of an instance whose material
-/// lets nothing through. A shadow ray first asks for everything that the camera sees (SK_MASK_USER); what is
-/// not free is asked again for opaque things alone, and gets part of the light (SK_SHADOW_TRANSMISSION) where
-/// there is none. The second question knows no user bits, so an opaque thing hidden from the camera still
-/// darkens what is behind glass; only there.
+/// Shadows of transparent things: a shadow ray first asks for everything that the camera sees. What is not
+/// free is asked again for opaque things alone (SETKA_MASK_OPAQUE), and gets part of the light
+/// (SK_SHADOW_TRANSMISSION) where there is none. The second question knows no user bits, so an opaque thing
+/// hidden from the camera still darkens what lies behind glass; only there.
 class WhittedPasses {
   public:
     WhittedPasses(Queue& queue, const DeviceScene& scene, const Structure& structure,

@@ -115,7 +115,10 @@ void OpenClDevice::resolve_options(const DeviceOptions& options) {
                         " accepts powers of two up to " + std::to_string(largest));
     const bool is_cpu = info_.type == DeviceType::Cpu;
     if (options_.work_group_size == 0) options_.work_group_size = std::min(largest, is_cpu ? 64u : 128u);
-    if (options_.primitives == PrimitiveShape::Auto)
+    if (options.primitives == PrimitiveShape::Library)
+        throw Error(ErrorCategory::Unsupported,
+                    "primitives is Library; OpenCL devices have none: use Portable, Serial or Group");
+    if (options_.primitives == PrimitiveShape::Auto || options_.primitives == PrimitiveShape::Portable)
         options_.primitives = is_cpu ? PrimitiveShape::Serial : PrimitiveShape::Group;
     if (options_.memory_budget_bytes == 0) {
         std::uint64_t memory = info_.memory_bytes;

@@ -8,10 +8,11 @@
 
 #include "backend/device.hpp"
 #include "backend/opencl/opencl.hpp"
+#include "backend/pool.hpp"
 
 namespace setka::backend {
 
-class OpenClPool;
+using OpenClPool = Pool<cl::Buffer>;
 
 class OpenClDevice final : public Device {
   public:

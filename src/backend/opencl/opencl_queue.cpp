@@ -2,7 +2,6 @@
 #include "backend/opencl/opencl_queue.hpp"
 
 #include <algorithm>
-#include <bit>
 
 #include "core/settings.hpp"
 
@@ -32,39 +31,7 @@ class OpenClMemory final : public Memory {
 
 OpenClMemory& as_opencl(Memory& memory) { return static_cast<OpenClMemory&>(memory); }
 
-/// Sizes of pooled buffers: eighths of a power of two, so that similar requests share and little is wasted.
-std::uint64_t pooled_size(std::uint64_t size_bytes) {
-    const std::uint64_t step = std::max<std::uint64_t>(256, std::bit_ceil(size_bytes) / 16);
-    return (size_bytes + step - 1) / step * step;
-}
-
 }  // namespace
-
-cl::Buffer OpenClPool::take(std::uint64_t size_bytes) {
-    const std::scoped_lock lock(mutex_);
-    const auto it = free_.find(size_bytes);
-    if (it == free_.end()) return {};
-    cl::Buffer buffer = std::move(it->second);
-    free_.erase(it);
-    cached_bytes_ -= size_bytes;
-    return buffer;
-}
-
-void OpenClPool::give(std::uint64_t size_bytes, cl::Buffer buffer) noexcept {
-    const std::scoped_lock lock(mutex_);
-    try {
-        free_.emplace(size_bytes, std::move(buffer));
-        cached_bytes_ += size_bytes;
-    } catch (const std::bad_alloc&) {
-        // Then the driver gets it back now.
-    }
-}
-
-void OpenClPool::clear() noexcept {
-    const std::scoped_lock lock(mutex_);
-    free_.clear();
-    cached_bytes_ = 0;
-}
 
 OpenClQueue::OpenClQueue(std::shared_ptr<OpenClDevice> device, std::shared_ptr<OpenClPool> pool)
     : device_(std::move(device)), pool_(std::move(pool)) {
@@ -76,7 +43,7 @@ OpenClQueue::OpenClQueue(std::shared_ptr<OpenClDevice> device, std::shared_ptr<O
 }
 
 std::shared_ptr<Memory> OpenClQueue::allocate(std::uint64_t size_bytes, std::string_view name) {
-    const std::uint64_t pooled_bytes = pooled_size(size_bytes);
+    const std::uint64_t pooled_bytes = OpenClPool::pooled_size(size_bytes);
     if (pooled_bytes > device_->info().max_allocation_bytes)
         throw Error(ErrorCategory::OutOfMemory,
                     "buffer '" + std::string(name) + "' needs " + std::to_string(size_bytes) + " bytes; " +
@@ -85,8 +52,9 @@ std::shared_ptr<Memory> OpenClQueue::allocate(std::uint64_t size_bytes, std::str
     device_->reserve(size_bytes, name);
     auto memory = std::make_shared<OpenClMemory>(size_bytes, std::string(name), cl::Buffer(), nullptr);
     try {
-        memory->buffer = pool_->take(pooled_bytes);
-        if (!memory->buffer()) {
+        if (auto pooled = pool_->take(pooled_bytes)) {
+            memory->buffer = std::move(*pooled);
+        } else {
             // Unused buffers of other sizes must not push the total over the budget.
             if (device_->in_use_bytes() + pool_->cached_bytes() > device_->options().memory_budget_bytes) pool_->clear();
             guarded("allocating '" + std::string(name) + "' (" + std::to_string(size_bytes) + " bytes)", [&] {

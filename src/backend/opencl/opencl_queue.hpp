@@ -2,30 +2,13 @@
 /// What does a queue mean in OpenCL? An in-order command queue with profiling, its kernel objects and its pool of buffers.
 #pragma once
 
-#include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
 #include "backend/opencl/opencl_device.hpp"
 
 namespace setka::backend {
-
-/// Buffers that were given back, by size. Those of one queue are reused in that queue's order only, so no command can still
-/// be using one when the next gets it.
-class OpenClPool {
-  public:
-    [[nodiscard]] cl::Buffer take(std::uint64_t size_bytes);  ///< null if there is none of this size
-    void give(std::uint64_t size_bytes, cl::Buffer buffer) noexcept;
-    void clear() noexcept;
-    [[nodiscard]] std::uint64_t cached_bytes() const noexcept { return cached_bytes_; }
-
-  private:
-    std::mutex mutex_;
-    std::multimap<std::uint64_t, cl::Buffer> free_;
-    std::uint64_t cached_bytes_ = 0;
-};
 
 class OpenClQueue final : public Queue {
   public:

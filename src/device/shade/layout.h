@@ -8,12 +8,6 @@
 
 #include "setka/layout.h"
 
-/** The bit of an uploaded instance's mask that says "opaque": shadow queries tell glass from the rest by it.
- */
-#define SK_MASK_OPAQUE 0x80000000u
-/** The bits of a mask that are the user's. */
-#define SK_MASK_USER 0x7fffffffu
-
 /** A pinhole camera: a ray's direction is forward + x * right + y * up for x and y in -1 to 1 over the
  * picture. 64 bytes. */
 typedef struct SkCamera {

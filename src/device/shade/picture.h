@@ -8,8 +8,7 @@
 
 #include "device/shade/shade.h"
 
-/** Ray i of the pixels from `first_pixel` on: a pixel's samples follow each other, on a regular grid row by
- * row. */
+/** Ray i of the pixels from `first_pixel` on: each pixel's samples in turn, row by row of a regular grid. */
 SK_FUNCTION void sk_camera_ray(sk_u32 i, SkCamera camera, sk_u32 first_pixel, SK_GLOBAL SetkaRay* rays) {
     const sk_u32 axis = camera.samples_per_axis, per_pixel = axis * axis;
     const sk_u32 pixel = first_pixel + i / per_pixel, sample = i % per_pixel;
@@ -73,13 +72,16 @@ SK_FUNCTION sk_vec3 sk_ramp_colour(float value, float maximum, SK_GLOBAL const f
     }
 }
 
+/** 0 for a NaN, which light beyond the range of floats may leave: its bits differ between devices. */
+SK_FUNCTION float sk_number(float a) { return a == a ? a : 0.0f; }
+
 /** The mean colour of a pixel's samples, summed in their order. */
 SK_FUNCTION sk_vec3 sk_pixel_colour(sk_u32 pixel, sk_u32 samples, SK_GLOBAL const float* colours) {
     sk_vec3 sum = sk_make3(0.0f, 0.0f, 0.0f);
     const float count = (float)samples;
     sk_u32 k;
     for (k = 0u; k < samples; ++k) sum = sk_add(sum, sk_load3(colours + 3u * (pixel * samples + k)));
-    return sk_make3(sum.x / count, sum.y / count, sum.z / count);
+    return sk_make3(sk_number(sum.x / count), sk_number(sum.y / count), sk_number(sum.z / count));
 }
 
 /** The 8-bit code of linear light: how many of the 255 ascending thresholds it reaches. A NaN reaches none.

@@ -10,12 +10,12 @@
 #include "device/shade/surface.h"
 
 /* Rays onward are dropped when they could change the picture by less than this. */
-#define SK_LEAST_THROUGHPUT 0.00390625f /* 2^-8 */
+#define SK_LEAST_THROUGHPUT 0x1p-8f
 /* The share of light that passes what is transparent, however thick: a shadow ray does not bend, so more
  * would be a guess. */
 #define SK_SHADOW_TRANSMISSION 0.75f
 /* Mirror and refraction rays leave the triangle's plane by an angle with at least this sine. */
-#define SK_LEAST_ESCAPE 9.765625e-4f /* 2^-10 */
+#define SK_LEAST_ESCAPE 0x1p-10f
 
 SK_FUNCTION void sk_store3(SK_GLOBAL float* p, sk_vec3 a) {
     p[0] = a.x;
@@ -23,8 +23,8 @@ SK_FUNCTION void sk_store3(SK_GLOBAL float* p, sk_vec3 a) {
     p[2] = a.z;
 }
 
-/** The background in a unit direction: horizon to zenith above, horizon to ground below, fastest at the
- * horizon. */
+/** The background in a unit direction: from the horizon to zenith or ground, changing fastest at the horizon.
+ */
 SK_FUNCTION sk_vec3 sk_background(SkBackground background, sk_vec3 direction) {
     const float height = sk_min(sk_abs(direction.y), 1.0f);
     const float share = height * (2.0f - height), rest = 1.0f - share;
@@ -35,8 +35,8 @@ SK_FUNCTION sk_vec3 sk_background(SkBackground background, sk_vec3 direction) {
         background.horizon[2] * rest + (up ? background.zenith[2] : background.ground[2]) * share);
 }
 
-/** Schlick's approximation (1994) of a mirror's Fresnel reflection: the specular colour, rising to 1 at
- * grazing angles. */
+/** Schlick's approximation (1994) of a mirror's Fresnel reflection: the specular colour, 1 at grazing angles.
+ */
 SK_FUNCTION sk_vec3 sk_mirror_share(SkMaterial material, float cosine) {
     const float x = sk_max(1.0f - cosine, 0.0f), x2 = x * x, x5 = (x2 * x2) * x;
     return sk_make3((material.specular[0] + (1.0f - material.specular[0]) * x5) * material.reflectivity,

@@ -9,11 +9,10 @@
 #include "device/math.h"
 #include "device/shade/layout.h"
 
-/* New rays start this share of the triangle's largest coordinate off the surface: 64 roundings of a point in
- * it. */
-#define SK_OFFSET_SHARE 3.814697265625e-6f /* 2^-18 */
-/* The shading normal and the direction to the viewer enclose an angle with at least this cosine. */
-#define SK_LEAST_COSINE 0.015625f /* 2^-6 */
+/* New rays start this share of the triangle's largest coordinate off it: 64 roundings of a point in it. */
+#define SK_OFFSET_SHARE 0x1p-18f
+/* The least cosine of the shading normal with the direction to the viewer, unless the triangle's is less. */
+#define SK_LEAST_COSINE 0x1p-6f
 
 typedef struct sk_measured {
     sk_vec3 unit;
@@ -22,8 +21,7 @@ typedef struct sk_measured {
 
 SK_FUNCTION sk_vec3 sk_negate(sk_vec3 a) { return sk_make3(-a.x, -a.y, -a.z); }
 
-/** Direction and length of any finite vector, without overflow or underflow of squares; both 0 for the zero
- * vector. */
+/** Direction and length of a finite vector; no square overflows or underflows. Both 0 for the zero vector. */
 SK_FUNCTION sk_measured sk_measure(sk_vec3 a) {
     sk_measured r;
     const float largest = sk_largest(a);
@@ -149,7 +147,8 @@ SK_FUNCTION SkSurfacePoint sk_surface_point(sk_vec3 direction, SetkaHit hit,
                                  sk_rise(position, c, nc), hit.v);
         }
     }
-    normal = sk_bend_towards(normal, viewer, SK_LEAST_COSINE);
+    /* A flat surface is never bent: it has no other side to show. */
+    normal = sk_bend_towards(normal, viewer, sk_min(SK_LEAST_COSINE, sk_dot3(geometric, viewer)));
 
     reach = offset + SK_OFFSET_SHARE * sk_max(sk_max(sk_largest(a), sk_largest(b)), sk_largest(c));
     r.position[0] = position.x;

@@ -12,6 +12,8 @@
 
 /** Below this a component of a working direction counts as 0. */
 #define SK_PARALLEL 0x1p-100f
+/** The most times that an origin is moved towards the scene. */
+#define SK_APPROACHES 8u
 
 typedef struct sk_working_ray {
     sk_vec3 o, d;
@@ -62,6 +64,11 @@ SK_FUNCTION sk_span sk_clip_box(sk_trace_params params, sk_vec3 o, sk_vec3 d) {
     return r;
 }
 
+/** The origin is more than about the scene's size away from it. */
+SK_FUNCTION int sk_is_far(sk_trace_params params, sk_span span) {
+    return span.w0 > params.extent || span.w1 < -params.extent;
+}
+
 SK_FUNCTION sk_working_ray sk_prepare_ray(sk_trace_params params, SetkaRay ray) {
     sk_working_ray r;
     sk_span span;
@@ -79,12 +86,14 @@ SK_FUNCTION sk_working_ray sk_prepare_ray(sk_trace_params params, SetkaRay ray) 
     d = sk_scale(sk_scale(d, r.pre), r.scale);
 
     span = sk_clip_box(params, o, d);
-    if (span.w0 > params.extent || span.w1 < -params.extent) {
-        r.shift = span.w0 > params.extent ? span.w0 : span.w1;
-        o = sk_add(o, sk_scale(d, r.shift));
-        if (span.meets) span = sk_clip_box(params, o, d);
+    /* A turn leaves an error of 2^-24 of the distance, so eight are enough for any two floats. */
+    for (sk_u32 turn = 0u; turn < SK_APPROACHES && span.meets && sk_is_far(params, span); ++turn) {
+        const float way = span.w0 > params.extent ? span.w0 : span.w1;
+        o = sk_add(o, sk_scale(d, way));
+        r.shift = r.shift + way;
+        span = sk_clip_box(params, o, d);
     }
-    r.valid = r.valid && span.meets;
+    r.valid = r.valid && span.meets && !sk_is_far(params, span);
     r.w0 = span.w0;
     r.w1 = span.w1;
     r.o = o;

@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: MIT */
+/** Entries of the grid build, one a stage; the bodies are in src/device/grid/build.h. */
+#include "platform.h"
+
+#include "device/grid/build.h"
+
+SK_KERNEL void grid_transform(sk_u32 n, sk_u32 instance_count, SK_GLOBAL const float* positions,
+                              SK_GLOBAL const sk_u32* indices, SK_GLOBAL const SetkaInstance* instances,
+                              SK_GLOBAL const sk_u32* instance_starts, SK_GLOBAL float* triangles,
+                              SK_GLOBAL sk_u32* first_bad) {
+    const sk_u32 i = sk_global_id();
+    if (i < n)
+        sk_grid_transform(i, instance_count, positions, indices, instances, instance_starts, triangles, first_bad);
+}
+
+SK_KERNEL void grid_rows(sk_u32 n, SetkaGridHeader grid, SK_GLOBAL const float* triangles, SK_GLOBAL sk_u32* rows) {
+    const sk_u32 i = sk_global_id();
+    if (i < n) sk_grid_rows(i, grid, triangles, rows);
+}
+
+SK_KERNEL void grid_row_list(sk_u32 n, SK_GLOBAL const sk_u32* row_starts, SK_GLOBAL sk_u32* row_triangles) {
+    const sk_u32 i = sk_global_id();
+    if (i < n) sk_grid_row_list(i, row_starts, row_triangles);
+}
+
+SK_KERNEL void grid_count(sk_u32 n, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
+                          SK_GLOBAL const sk_u32* row_triangles, SK_GLOBAL const sk_u32* row_starts,
+                          SK_GLOBAL sk_u32* counts) {
+    const sk_u32 r = sk_global_id();
+    if (r < n) sk_grid_count(r, grid, triangles, row_triangles, row_starts, counts);
+}
+
+SK_KERNEL void grid_emit(sk_u32 n, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
+                         SK_GLOBAL const sk_u32* row_triangles, SK_GLOBAL const sk_u32* row_starts,
+                         SK_GLOBAL const sk_u32* row_offsets, SK_GLOBAL sk_u32* cells, SK_GLOBAL sk_u32* references) {
+    const sk_u32 r = sk_global_id();
+    if (r < n) sk_grid_emit(r, grid, triangles, row_triangles, row_starts, row_offsets, cells, references);
+}
+
+SK_KERNEL void grid_cells_clear(sk_u32 n, SK_GLOBAL sk_i32* offsets, SK_GLOBAL sk_u32* counts) {
+    const sk_u32 c = sk_global_id();
+    if (c < n) sk_grid_cells_clear(c, offsets, counts);
+}
+
+SK_KERNEL void grid_cells_mark(sk_u32 n, SK_GLOBAL const sk_u32* cells, SK_GLOBAL sk_i32* offsets,
+                               SK_GLOBAL sk_u32* counts) {
+    const sk_u32 p = sk_global_id();
+    if (p < n) sk_grid_cells_mark(p, n, cells, offsets, counts);
+}
+
+SK_KERNEL void grid_cells_close(sk_u32 n, SK_GLOBAL const sk_i32* offsets, SK_GLOBAL sk_u32* counts) {
+    const sk_u32 c = sk_global_id();
+    if (c < n) sk_grid_cells_close(c, offsets, counts);
+}
+
+SK_KERNEL void grid_cells_search(sk_u32 n, sk_u32 pair_count, SK_GLOBAL const sk_u32* cells,
+                                 SK_GLOBAL sk_i32* offsets, SK_GLOBAL sk_u32* counts) {
+    const sk_u32 c = sk_global_id();
+    if (c < n) sk_grid_cells_search(c, pair_count, cells, offsets, counts);
+}

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+/// What does a device mean in CUDA? A runtime device number; kernels are in the binary, compiled ahead of time.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "backend/cuda/cuda_check.hpp"
+#include "backend/device.hpp"
+#include "backend/pool.hpp"
+
+namespace setka::backend {
+
+/// Owns an allocation of cudaMalloc.
+struct CudaFree {
+    void operator()(void* pointer) const noexcept { check_noexcept(cudaFree(pointer), "cudaFree"); }
+};
+using CudaBuffer = std::unique_ptr<void, CudaFree>;
+using CudaPool = Pool<CudaBuffer>;
+
+class CudaDevice final : public Device {
+  public:
+    /// Throws InvalidArgument for options the device cannot meet.
+    CudaDevice(int number, DeviceInfo info, const DeviceOptions& options);
+
+    [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
+    [[nodiscard]] const DeviceOptions& options() const noexcept override { return options_; }
+    [[nodiscard]] std::shared_ptr<Queue> make_queue() override;
+    void trim() override;
+
+    [[nodiscard]] int number() const noexcept { return number_; }
+
+  private:
+    void resolve_options(const DeviceOptions& options);
+
+    int number_;
+    DeviceInfo info_;
+    DeviceOptions options_;
+    std::mutex pools_mutex_;
+    std::vector<std::weak_ptr<CudaPool>> pools_;
+};
+
+}  // namespace setka::backend

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include "backend/cuda/cuda_registry.hpp"
+
+#include "backend/cuda/cuda_device.hpp"
+#include "backend/cuda/kernel_table.hpp"
+
+namespace setka::backend {
+
+namespace {
+
+std::string version_text(int version) {
+    return std::to_string(version / 1000) + "." + std::to_string(version % 1000 / 10);
+}
+
+DeviceInfo describe(int number, const cudaDeviceProp& properties, int driver, int runtime) {
+    DeviceInfo info;
+    info.id = "cuda:" + std::to_string(number);
+    info.backend = Backend::Cuda;
+    info.type = DeviceType::Gpu;
+    info.name = properties.name;
+    info.vendor = "NVIDIA Corporation";
+    info.platform = "CUDA " + version_text(runtime) + ", compute capability " + std::to_string(properties.major) + "." +
+                    std::to_string(properties.minor);
+    info.driver = "CUDA " + version_text(driver);
+    info.compute_units = static_cast<std::uint32_t>(properties.multiProcessorCount);
+    info.max_work_group_size = static_cast<std::uint32_t>(properties.maxThreadsPerBlock);
+    info.memory_bytes = properties.totalGlobalMem;
+    info.max_allocation_bytes = properties.totalGlobalMem;
+    info.local_memory_bytes = properties.sharedMemPerBlock;
+    info.max_parameter_bytes = 4096;  // of every architecture (CUDA C++ Programming Guide, "Function parameters")
+    info.unified_memory = false;
+    info.correctly_rounded_divide_sqrt = true;  // by the flags that the kernels are compiled with
+    return info;
+}
+
+}  // namespace
+
+void add_cuda_devices(Registry& registry) {
+    int driver = 0, runtime = 0, count = 0;
+    // 0 without a driver; no error then.
+    if (cudaDriverGetVersion(&driver) != cudaSuccess || driver == 0) {
+        registry.notes.push_back("CUDA: no NVIDIA driver was found");
+        return;
+    }
+    (void)cudaRuntimeGetVersion(&runtime);
+    if (const cudaError_t code = cudaGetDeviceCount(&count); code != cudaSuccess) {
+        (void)cudaGetLastError();
+        registry.notes.push_back(std::string("CUDA: ") + cudaGetErrorString(code) + " (driver for CUDA " +
+                                 version_text(driver) + ", built with CUDA " + version_text(runtime) + ")");
+        return;
+    }
+    for (int number = 0; number < count; ++number) {
+        cudaDeviceProp properties{};
+        cudaFuncAttributes attributes{};
+        cudaError_t code = cudaGetDeviceProperties(&properties, number);
+        if (code == cudaSuccess) code = cudaSetDevice(number);
+        // Fails if the build has neither code for this architecture nor PTX that the driver can translate for it.
+        if (code == cudaSuccess) code = cudaFuncGetAttributes(&attributes, cuda_kernel(Kernel::grid_emit));
+        if (code != cudaSuccess) {
+            (void)cudaGetLastError();
+            registry.notes.push_back("CUDA device " + std::to_string(number) + " (" + properties.name +
+                                     ", compute capability " + std::to_string(properties.major) + "." +
+                                     std::to_string(properties.minor) + ") cannot be used: " + cudaGetErrorString(code));
+            continue;
+        }
+        const DeviceInfo info = describe(number, properties, driver, runtime);
+        registry.devices.push_back({info, [number, info](const DeviceOptions& options) {
+                                        return std::make_shared<CudaDevice>(number, info, options);
+                                    }});
+    }
+}
+
+}  // namespace setka::backend

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+/// What happens to allocations that are given back? They wait, by size, for the next request of the same queue.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <new>
+#include <optional>
+#include <utility>
+
+namespace setka::backend {
+
+/// Allocations of one queue that are not in use. They are reused in that queue's order only, so no command can still be using
+/// one when the next gets it. Destroying a Handle returns the memory to the driver.
+template <typename Handle>
+class Pool {
+  public:
+    /// Sizes of pooled allocations: sixteenths of a power of two, so that similar requests share and little is wasted.
+    [[nodiscard]] static std::uint64_t pooled_size(std::uint64_t size_bytes) {
+        const std::uint64_t step = std::max<std::uint64_t>(256, std::bit_ceil(size_bytes) / 16);
+        return (size_bytes + step - 1) / step * step;
+    }
+
+    [[nodiscard]] std::optional<Handle> take(std::uint64_t size_bytes) {
+        const std::scoped_lock lock(mutex_);
+        const auto it = free_.find(size_bytes);
+        if (it == free_.end()) return std::nullopt;
+        std::optional<Handle> handle(std::move(it->second));
+        free_.erase(it);
+        cached_bytes_ -= size_bytes;
+        return handle;
+    }
+
+    void give(std::uint64_t size_bytes, Handle handle) noexcept {
+        const std::scoped_lock lock(mutex_);
+        try {
+            free_.emplace(size_bytes, std::move(handle));
+            cached_bytes_ += size_bytes;
+        } catch (const std::bad_alloc&) {
+            // Then the driver gets it back now.
+        }
+    }
+
+    void clear() noexcept {
+        const std::scoped_lock lock(mutex_);
+        free_.clear();
+        cached_bytes_ = 0;
+    }
+
+    [[nodiscard]] std::uint64_t cached_bytes() const noexcept {
+        const std::scoped_lock lock(mutex_);
+        return cached_bytes_;
+    }
+
+  private:
+    mutable std::mutex mutex_;
+    std::multimap<std::uint64_t, Handle> free_;
+    std::uint64_t cached_bytes_ = 0;
+};
+
+}  // namespace setka::backend

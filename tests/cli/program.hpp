@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+/// What does the program do when a shell runs it? Starts it, waits, and collects exit code, output and
+/// errors.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace cli_test {
+
+struct Outcome {
+    int exit_code = -1;  ///< -1 if a signal ended it
+    std::string output;
+    std::string errors;
+    double seconds = 0;
+};
+
+/// Runs the program that was built. `environment` is added to the test's own. Killed, with exit code -1,
+/// after 120 s.
+[[nodiscard]] Outcome run(const std::vector<std::string>& arguments,
+                          const std::vector<std::pair<std::string, std::string>>& environment = {});
+
+/// True if the program finds a device here.
+[[nodiscard]] bool has_device();
+
+/// A folder for one test, removed with it.
+class Folder {
+  public:
+    Folder();
+    ~Folder();
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+    [[nodiscard]] std::string operator/(const std::string& name) const { return (path_ / name).string(); }
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+    [[nodiscard]] bool is_empty() const { return std::filesystem::is_empty(path_); }
+
+  private:
+    std::filesystem::path path_;
+};
+
+[[nodiscard]] std::string read_file(const std::filesystem::path& file);
+void write_file(const std::filesystem::path& file, const std::string& content);
+
+/// What a bad call must leave behind: exit code 2, nothing on stdout, and one line on stderr that starts with
+/// "setka: " and contains each of `parts`.
+void expect_one_clear_line(const Outcome& outcome, const std::vector<std::string>& parts);
+
+}  // namespace cli_test
+
+/// In a test that needs a device: skips it, visibly, where there is none.
+#define SETKA_NEED_DEVICE() \
+    if (!::cli_test::has_device()) GTEST_SKIP() << "no device"

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+/// Do pictures reach their files with the right pixels, and do failures say why and leave nothing behind?
+#include <OpenImageIO/imageio.h>
+
+#include "tests/io/support.hpp"
+
+namespace setka::io::test {
+
+namespace {
+
+/// 5 x 3 pixels, all different.
+Image sample() {
+    Image image;
+    image.width = 5;
+    image.height = 3;
+    for (std::uint32_t i = 0; i < 15; ++i) {
+        image.linear.push_back({static_cast<float>(i) * 0.25f, 0.5f, 100.0f / static_cast<float>(i + 1)});
+        for (const std::uint32_t value : {i * 17, 255 - i, i * i})
+            image.srgb.push_back(static_cast<std::uint8_t>(value));
+    }
+    return image;
+}
+
+template <typename T>
+std::vector<T> read_pixels(const std::filesystem::path& file, OIIO::TypeDesc type) {
+    const auto input = OIIO::ImageInput::open(file.string());
+    if (!input || input->spec().width != 5 || input->spec().height != 3) return {};
+    std::vector<T> pixels(45);
+    EXPECT_TRUE(input->read_image(0, 0, 0, 3, type, pixels.data()));
+    return pixels;
+}
+
+TEST(WriteImage, LosslessEightBitFormatsKeepEveryByte) {
+    const Folder folder;
+    const Image image = sample();
+    for (const char* name : {"a.png", "a.tif", "a.tiff", "a.bmp", "a.tga", "a.ppm", "UPPER.PNG"}) {
+        write_image(folder / name, image);
+        EXPECT_EQ(read_pixels<std::uint8_t>(folder / name, OIIO::TypeDesc::UINT8), image.srgb) << name;
+    }
+    EXPECT_EQ(folder.file_count(), 7u);
+}
+
+TEST(WriteImage, JpegIsClose) {
+    const Folder folder;
+    write_image(folder / "a.jpg", sample());
+    EXPECT_EQ(read_pixels<std::uint8_t>(folder / "a.jpg", OIIO::TypeDesc::UINT8).size(), 45u);
+}
+
+TEST(WriteImage, FloatFormatsAreLinear) {
+    const Folder folder;
+    const Image image = sample();
+    const std::vector<float> expected(&image.linear[0].x, &image.linear[0].x + 45);
+    for (const char* name : {"a.exr", "a.pfm"}) {
+        write_image(folder / name, image);
+        EXPECT_EQ(read_pixels<float>(folder / name, OIIO::TypeDesc::FLOAT), expected) << name;
+    }
+    write_image(folder / "a.hdr", image);  // eight bits beside a shared exponent
+    const std::vector<float> shared = read_pixels<float>(folder / "a.hdr", OIIO::TypeDesc::FLOAT);
+    ASSERT_EQ(shared.size(), 45u);
+    for (std::size_t i = 0; i < 45; ++i) {
+        const float largest =
+            std::max({expected[i / 3 * 3], expected[i / 3 * 3 + 1], expected[i / 3 * 3 + 2]});
+        EXPECT_NEAR(shared[i], expected[i], largest / 100) << i;
+    }
+}
+
+TEST(WriteImage, IsTheSameFileEveryTime) {
+    const Folder folder;
+    for (const char* name : {"a.png", "a.exr", "a.tif"}) {
+        write_image(folder / name, sample());
+        const std::string first = read_bytes(folder / name);
+        write_image(folder / name, sample());
+        EXPECT_EQ(read_bytes(folder / name), first) << name;
+    }
+}
+
+TEST(WriteImage, SaysWhatItCannotDo) {
+    const Folder folder;
+    for (const auto& attempt : {std::pair("a.gif2", "known are png"),
+                                {"a", "no extension"},
+                                {"absent/a.png", "no directory"},
+                                {"absent/a.pfm", "no directory"}}) {
+        const std::filesystem::path file = folder / attempt.first;
+        for (int check = 0; check < 2; ++check)
+            expect_error([&] { check ? check_image_writable(file) : write_image(file, sample()); },
+                         ErrorCategory::InvalidArgument, {file.filename().string(), attempt.second});
+    }
+    Image broken = sample();
+    broken.srgb.pop_back();
+    expect_error([&] { write_image(folder / "a.png", broken); }, ErrorCategory::InvalidArgument, {"5 x 3"});
+    EXPECT_EQ(folder.file_count(), 0u);
+}
+
+TEST(CheckImageWritable, LeavesNothingAndTouchesNothing) {
+    const Folder folder;
+    for (const char* name :
+         {"a.png", "b.jpeg", "c.tif", "d.bmp", "e.tga", "f.ppm", "g.exr", "h.hdr", "i.pfm"})
+        EXPECT_NO_THROW(check_image_writable(folder / name)) << name;
+    EXPECT_EQ(folder.file_count(), 0u);
+    (void)folder.write("old.png", "old");
+    check_image_writable(folder / "old.png");
+    EXPECT_EQ(read_bytes(folder / "old.png"), "old");
+}
+
+}  // namespace
+
+}  // namespace setka::io::test

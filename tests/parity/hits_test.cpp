@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+/// Are a device's hits the oracle's, and those of grids of any density and stepping rule those of brute
+/// force, bit for bit?
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "setka/error.hpp"
+#include "support/compare.hpp"
+#include "support/devices.hpp"
+#include "support/rays.hpp"
+#include "support/scenes.hpp"
+#include "support/shapes.hpp"
+
+namespace {
+
+constexpr float densities[] = {0.05f, 0.5f, 4.0f, 16.0f, 64.0f};
+constexpr setka::GridStep steps[] = {setka::GridStep::Dda, setka::GridStep::BranchFree};
+
+const char* name(setka::GridStep step) { return step == setka::GridStep::Dda ? "DDA" : "branch-free"; }
+
+std::size_t count_hits(const std::vector<setka::Hit>& hits) {
+    return static_cast<std::size_t>(std::count_if(
+        hits.begin(), hits.end(), [](const setka::Hit& hit) { return hit.primitive != SETKA_NO_HIT; }));
+}
+
+class Hits : public support::DeviceAndTest<std::string> {
+  protected:
+    [[nodiscard]] setka::Scene scene() const { return support::find_scene(other()).make(); }
+};
+SETKA_ON_EVERY_DEVICE_AND(Hits, support::names(support::all_scenes()));
+
+TEST_P(Hits, OfBruteForceEqualTheOracles) {
+    const setka::Scene host_scene = scene();
+    const oracle::World world = oracle::make_world(host_scene);
+    const auto rays = support::adversarial_rays(world, 6000, 41);
+    const auto expected = oracle::closest_hits(world, rays);
+    for (const char* shape : {"defaults", "Serial_1", "Group_256"}) {
+        SCOPED_TRACE(shape);
+        setka::Queue queue = device(support::launch_shape(shape)).make_queue();
+        const auto brute = setka::BruteForce::build(queue, setka::DeviceScene(queue, host_scene));
+        EXPECT_TRUE(support::same_hits(rays, expected, setka::Tracer().closest_hit(queue, brute, rays)));
+        EXPECT_TRUE(support::same_occlusion(rays, expected, setka::Tracer().any_hit(queue, brute, rays)));
+    }
+    std::cout << count_hits(expected) << " of " << rays.size() << " rays hit\n";
+}
+
+TEST_P(Hits, OfGridsEqualThoseOfBruteForce) {
+    const setka::Scene host_scene = scene();
+    const oracle::World world = oracle::make_world(host_scene);
+    const auto rays = support::adversarial_rays(world, 100000, 42);
+    setka::Queue queue = device().make_queue();
+    const setka::DeviceScene device_scene(queue, host_scene);
+    const auto brute = setka::BruteForce::build(queue, device_scene);
+    const auto expected = setka::Tracer().closest_hit(queue, brute, rays);
+    for (const float density : densities) {
+        const auto grid = setka::make_grid_builder({.density = density})->build(queue, device_scene);
+        for (const auto step : steps) {
+            SCOPED_TRACE("density " + std::to_string(density) + ", " + name(step));
+            const setka::Tracer tracer({.step = step});
+            EXPECT_TRUE(support::same_hits(rays, expected, tracer.closest_hit(queue, grid, rays)));
+            EXPECT_TRUE(support::same_occlusion(rays, expected, tracer.any_hit(queue, grid, rays)));
+        }
+    }
+}
+
+TEST_P(Hits, OfLongThinGridsEqualThoseOfBruteForce) {
+    const setka::Scene host_scene = scene();
+    const auto rays = support::adversarial_rays(oracle::make_world(host_scene), 20000, 43);
+    setka::Queue queue = device().make_queue();
+    const setka::DeviceScene device_scene(queue, host_scene);
+    const auto brute = setka::BruteForce::build(queue, device_scene);
+    const auto expected = setka::Tracer().closest_hit(queue, brute, rays);
+    for (const std::uint32_t cap : {1u, 2u, 3u, 17u}) {
+        const auto grid = setka::make_grid_builder({.density = 1000, .max_cells_per_axis = cap})
+                              ->build(queue, device_scene);
+        for (const auto step : steps) {
+            SCOPED_TRACE("at most " + std::to_string(cap) + " cells an axis, " + name(step));
+            EXPECT_TRUE(support::same_hits(rays, expected,
+                                           setka::Tracer({.step = step}).closest_hit(queue, grid, rays)));
+        }
+    }
+}
+
+class Rays : public support::DeviceTest {};
+SETKA_ON_EVERY_DEVICE(Rays);
+
+TEST_P(Rays, OfAnyNumber) {
+    setka::Queue queue = device().make_queue();
+    const setka::Scene host_scene = support::ball(200);
+    const oracle::World world = oracle::make_world(host_scene);
+    const setka::DeviceScene device_scene(queue, host_scene);
+    const auto grid = setka::make_grid_builder()->build(queue, device_scene);
+    for (const std::size_t count : {0u, 1u, 63u, 64u, 65u, 255u, 257u, 4099u}) {
+        const auto rays = support::adversarial_rays(world, count, 44);
+        const auto expected = oracle::closest_hits(world, rays);
+        EXPECT_TRUE(support::same_hits(rays, expected, setka::Tracer().closest_hit(queue, grid, rays)));
+        EXPECT_TRUE(support::same_occlusion(rays, expected, setka::Tracer().any_hit(queue, grid, rays)));
+    }
+}
+
+/// No ray slips through a closed mesh: every ray from inside hits, if it is aimed at a vertex or edge too.
+TEST_P(Rays, DoNotLeaveAClosedMesh) {
+    setka::Queue queue = device().make_queue();
+    for (const float offset : {0.0f, 1000.0f}) {
+        const setka::Scene host_scene = support::ball(2000, {offset, -offset, offset});
+        const oracle::World world = oracle::make_world(host_scene);
+        auto rays = support::adversarial_rays(world, 64000, 45);
+        const auto inner = [&](int axis) { return axis == 1 ? -offset : offset; };
+        std::vector<setka::Ray> inside;
+        for (setka::Ray ray : rays) {
+            bool is_usable = true;
+            float longest = 0;
+            for (int axis = 0; axis < 3; ++axis) {
+                const float target = ray.origin[axis] + ray.direction[axis];
+                ray.origin[axis] = inner(axis);
+                ray.direction[axis] = target - ray.origin[axis];
+                is_usable = is_usable && std::isfinite(ray.direction[axis]);
+                longest = std::max(longest, std::fabs(ray.direction[axis]));
+            }
+            ray.tmin = 0;
+            ray.tmax = std::numeric_limits<float>::infinity();
+            if (is_usable && longest > 1e-3f && longest < 1e3f) inside.push_back(ray);
+        }
+        ASSERT_GT(inside.size(), 10000u);
+        const setka::DeviceScene device_scene(queue, host_scene);
+        for (const float density : {0.5f, 4.0f, 64.0f}) {
+            const auto grid = setka::make_grid_builder({.density = density})->build(queue, device_scene);
+            EXPECT_EQ(count_hits(setka::Tracer().closest_hit(queue, grid, inside)), inside.size());
+        }
+    }
+}
+
+TEST_P(Rays, CostsAreSane) {
+    setka::Queue queue = device().make_queue();
+    const setka::Scene host_scene = support::ball(2000);
+    const setka::DeviceScene device_scene(queue, host_scene);
+    const auto rays = support::adversarial_rays(oracle::make_world(host_scene), 10000, 46);
+    const auto device_rays = queue.upload(std::span(rays), "rays");
+    const auto grid = setka::make_grid_builder({.density = 16})->build(queue, device_scene);
+    const auto& dims = grid.header().dims;
+    const std::uint32_t most_steps = dims[0] + dims[1] + dims[2];
+    for (const auto step : steps) {
+        const auto costs = queue.make_buffer<setka::TraceCost>(rays.size(), "costs");
+        const setka::Tracer tracer({.step = step});
+        tracer.closest_hit_cost(queue, grid, device_rays, costs);
+        const auto hits = tracer.closest_hit(queue, grid, rays);
+        const auto host_costs = queue.download(costs);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            ASSERT_LE(host_costs[i].steps, most_steps) << "ray " << i << ", " << name(step);
+            if (hits[i].primitive != SETKA_NO_HIT) {
+                ASSERT_GT(host_costs[i].steps, 0u) << "ray " << i;
+                ASSERT_GT(host_costs[i].tests, 0u) << "ray " << i;
+            }
+        }
+    }
+}
+
+TEST_P(Rays, ShortOutputsAreRefused) {
+    setka::Queue queue = device().make_queue();
+    const setka::Scene host_scene = support::ball(200);
+    const setka::DeviceScene device_scene(queue, host_scene);
+    const auto grid = setka::make_grid_builder()->build(queue, device_scene);
+    const auto rays = queue.make_buffer<setka::Ray>(10, "rays");
+    EXPECT_THROW(setka::Tracer().closest_hit(queue, grid, rays, queue.make_buffer<setka::Hit>(9, "hits")),
+                 setka::Error);
+    EXPECT_THROW(setka::Tracer().any_hit(queue, grid, rays, queue.make_buffer<std::uint32_t>(9, "flags")),
+                 setka::Error);
+}
+
+}  // namespace

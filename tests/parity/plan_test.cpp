@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+/// Does plan() know the exact bytes of a build, and is a build that would not fit refused before anything is
+/// lost?
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "setka/setka.hpp"
+#include "support/devices.hpp"
+#include "support/scenes.hpp"
+#include "support/shapes.hpp"
+
+namespace {
+
+using setka::Device;
+using setka::Error;
+using setka::ErrorCategory;
+
+const std::vector<std::string> scenes{"single_triangle", "single_point",   "slivers", "giant",
+                                      "placed",          "built_in_torus", "ball"};
+
+setka::Scene make(const std::string& name) {
+    return name == "ball" ? support::ball(100000) : support::find_scene(name).make();
+}
+
+class Plan : public support::DeviceAndTest<std::string> {};
+SETKA_ON_EVERY_DEVICE_AND(Plan, scenes);
+
+TEST_P(Plan, IsExact) {
+    const setka::Scene scene = make(other());
+    for (const char* shape : {"defaults", "Serial_64", "Group_64", "Group_256", "Serial_1"}) {
+        const Device opened = device(support::launch_shape(shape));
+        setka::Queue queue = opened.make_queue();
+        const setka::DeviceScene device_scene(queue, scene);
+        for (const float density : {0.5f, 4.0f, 16.0f})
+            for (const auto tables : {setka::CellTables::RunBoundaries, setka::CellTables::BinarySearch}) {
+                SCOPED_TRACE(std::string(shape) + ", density " + std::to_string(density));
+                const std::uint64_t before = opened.memory_in_use_bytes();
+                opened.reset_peak_memory();
+                const auto builder = setka::make_grid_builder({.density = density, .cell_tables = tables});
+                setka::GridPlan plan = builder->plan(queue, device_scene);
+                const std::uint64_t peak_bytes = plan.peak_bytes(), table_bytes = plan.table_bytes();
+                const std::uint64_t pairs = plan.pair_count();
+                const setka::Grid grid = builder->build(queue, std::move(plan));
+                EXPECT_EQ(opened.peak_memory_bytes() - before, peak_bytes);
+                EXPECT_EQ(grid.size_bytes(), table_bytes);
+                EXPECT_EQ(opened.memory_in_use_bytes() - before,
+                          grid.offsets().size_bytes() + grid.counts().size_bytes() +
+                              grid.references().size_bytes() + grid.geometry().triangles.size_bytes())
+                    << "what is left beyond the scene is the grid alone";
+                std::uint64_t sum = 0;
+                for (const setka::Section& section : grid.sections()) sum += section.size_bytes;
+                EXPECT_EQ(sum, table_bytes);
+                EXPECT_EQ(grid.references().size(), pairs);
+                EXPECT_EQ(grid.header().reference_count, pairs);
+            }
+        EXPECT_EQ(opened.memory_in_use_bytes(), device_scene.size_bytes()) << "all grids are gone";
+    }
+}
+
+/// A budget of exactly the peak suffices, and one byte less is refused by plan() already.
+TEST_P(Plan, IsEnoughAndNotTooMuch) {
+    const setka::Scene scene = make(other());
+    const setka::GridOptions options{.density = 64};
+    std::uint64_t need = 0;
+    {
+        setka::Queue queue = device().make_queue();
+        const setka::DeviceScene device_scene(queue, scene);
+        need = device().memory_in_use_bytes();
+        need += setka::make_grid_builder(options)->plan(queue, device_scene).peak_bytes();
+    }
+    const auto build = [&](std::uint64_t budget_bytes) {
+        const Device limited = Device::open(std::get<0>(GetParam()), {.memory_budget_bytes = budget_bytes});
+        setka::Queue queue = limited.make_queue();
+        const setka::DeviceScene device_scene(queue, scene);
+        const auto builder = setka::make_grid_builder(options);
+        setka::GridPlan plan = builder->plan(queue, device_scene);
+        return builder->build(queue, std::move(plan)).header().reference_count;
+    };
+    EXPECT_GT(build(need), 0u);
+    try {
+        (void)build(need - 1);
+        FAIL() << "nothing was thrown";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.category(), ErrorCategory::OutOfMemory) << error.what();
+    }
+}
+
+class GridErrors : public support::DeviceTest {};
+SETKA_ON_EVERY_DEVICE(GridErrors);
+
+TEST_P(GridErrors, OptionsOutOfRange) {
+    const auto refused = [](const setka::GridOptions& options) {
+        try {
+            (void)setka::make_grid_builder(options);
+            ADD_FAILURE() << "nothing was thrown";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.category(), ErrorCategory::InvalidArgument) << error.what();
+        }
+    };
+    for (const float density : {0.0f, -1.0f, 1e-7f, 1.1e6f, NAN, INFINITY, -INFINITY})
+        refused({.density = density});
+    for (const std::uint32_t cap : {0u, 4097u, ~0u}) refused({.max_cells_per_axis = cap});
+    (void)setka::make_grid_builder({.density = 1e-6f});
+    (void)setka::make_grid_builder({.density = 1e6f, .max_cells_per_axis = 4096});
+    (void)setka::make_grid_builder({.density = 1e6f, .max_cells_per_axis = 1});
+}
+
+TEST_P(GridErrors, TrianglesThatAreNotFiniteInTheWorld) {
+    setka::Queue queue = device().make_queue();
+    setka::Scene scene = support::ball(100, {}, 1e30f);
+    scene.instances[0].transform.rows[0] = 1e20f;  // finite here, infinite there
+    const auto refused = [&](auto&& build) {
+        try {
+            build();
+            ADD_FAILURE() << "nothing was thrown";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.category(), ErrorCategory::InvalidData) << error.what();
+        }
+    };
+    const std::uint64_t before = device().memory_in_use_bytes();
+    refused([&] { (void)setka::make_grid_builder()->build(queue, setka::DeviceScene(queue, scene)); });
+    refused([&] { (void)setka::BruteForce::build(queue, setka::DeviceScene(queue, scene)); });
+    EXPECT_EQ(device().memory_in_use_bytes(), before);
+}
+
+TEST_P(GridErrors, AbsurdDensityIsRefusedCleanly) {
+    const Device limited = Device::open(GetParam(), {.memory_budget_bytes = 64 << 20});
+    setka::Queue queue = limited.make_queue();
+    const setka::DeviceScene device_scene(queue, support::ball(20000));
+    try {
+        (void)setka::make_grid_builder({.density = 1e6f})->plan(queue, device_scene);
+        FAIL() << "nothing was thrown";
+    } catch (const Error& error) {
+        EXPECT_EQ(error.category(), ErrorCategory::OutOfMemory) << error.what();
+    }
+    EXPECT_EQ(limited.memory_in_use_bytes(), device_scene.size_bytes());
+    EXPECT_GT(setka::make_grid_builder()->build(queue, device_scene).references().size(), 0u)
+        << "usable after it";
+}
+
+}  // namespace
