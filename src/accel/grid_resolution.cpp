@@ -13,7 +13,9 @@ GridResolution grid_resolution(const Bounds& bounds, std::uint32_t triangle_coun
     for (int axis = 0; axis < 3; ++axis) extents[axis] = double(bounds.upper[axis]) - double(bounds.lower[axis]);
     const double cells = double(options.density) * triangle_count;
 
-    double size = 1;
+    const double longest = *std::ranges::max_element(extents);
+    const double whole = longest > 0 ? longest : 1;  // one cell holds everything
+    double size = whole;
     for (unsigned count = 3; count > 0; --count) {
         double volume = 1;
         int shortest = -1;
@@ -25,9 +27,8 @@ GridResolution grid_resolution(const Bounds& bounds, std::uint32_t triangle_coun
         size = exact::root(volume / cells, count);
         if (extents[shortest] > 0 && !(extents[shortest] < size)) break;
         active[shortest] = false;  // one cell thick: the others alone decide how long a cell is
-        size = 1;
+        size = whole;
     }
-    const double longest = *std::ranges::max_element(extents);
     size = std::max({size, longest / options.max_cells_per_axis, 0x1p-80});
 
     GridResolution resolution;

@@ -2,6 +2,7 @@
 #include "accel/world_geometry.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 
@@ -33,12 +34,22 @@ WorldGeometry transform_scene(Queue& queue, const DeviceScene& scene) {
         throw Error(ErrorCategory::InvalidData,
                     "scene triangle " + std::to_string(bad) +
                         " has a vertex that is not finite after its instance's transform; finite vertices are needed");
-    constexpr float largest = 1e30f;
+    constexpr float largest = 1e20f;
     if (!(extent_of(geometry.bounds) <= largest))
         throw Error(ErrorCategory::InvalidData, "the scene's extent is " + std::to_string(extent_of(geometry.bounds)) +
-                                                    "; up to 1e30 can be calculated with in float");
+                                                    "; up to 1e20 can be calculated with in float");
     return geometry;
 }
+
+namespace {
+
+/// The power of two that brings the extent to [2^20, 2^21); for extents outside [2^-100, 2^100] that of the nearest bound.
+float unit_of(float extent) noexcept {
+    if (extent == 0) return 1;
+    return std::ldexp(1.0f, 20 - std::clamp(std::ilogb(extent), -100, 100));
+}
+
+}  // namespace
 
 float extent_of(const Bounds& bounds) noexcept {
     return std::max({bounds.upper[0] - bounds.lower[0], bounds.upper[1] - bounds.lower[1],
@@ -53,6 +64,7 @@ sk_trace_params trace_params(const WorldGeometry& geometry, std::uint32_t mask) 
     }
     params.extent = extent_of(geometry.bounds);
     params.pad = params.extent * 0x1p-16f;
+    params.unit = unit_of(params.extent);
     params.mask = mask;
     params.filters = (geometry.common_mask & mask) == 0;
     params.instance_count = geometry.instance_count;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -51,7 +52,8 @@ struct Tally {
 };
 
 [[nodiscard]] std::string describe(const Hit& hit) {
-    if (hit.primitive == SETKA_NO_HIT) return "no hit";
+    constexpr Hit miss{std::numeric_limits<float>::infinity(), 0, 0, SETKA_NO_HIT, SETKA_NO_HIT};
+    if (std::memcmp(&hit, &miss, sizeof(Hit)) == 0) return "no hit";
     return fmt::format("t {:.9g}, u {:.9g}, v {:.9g}, primitive {}, instance {}", hit.t, hit.u, hit.v,
                        hit.primitive, hit.instance);
 }

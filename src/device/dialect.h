@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /**
- * Which words may a kernel body use? C99 as OpenCL C 1.2, CUDA C++ and host C++ all accept it, plus the words below, which
+ * Which words may a kernel body use? C99 as every backend's compiler and host C++ accept it, plus the words below, which
  * the platform.h of each folder translates. This file is the list; it fails the build of a platform that lacks one.
  *
  *   SK_KERNEL                a kernel entry point returning void

@@ -62,7 +62,7 @@ NpyHeader read_header(const std::filesystem::path& file, std::string_view bytes)
     NpyHeader header{value_of(dictionary, "descr"), value_of(dictionary, "fortran_order"),
                      value_of(dictionary, "shape"), begin + length};
     if (header.dtype.empty() || header.fortran_order.empty() || dictionary.find("shape") == dictionary.npos)
-        fail_read(file, "its NumPy header is malformed: '" + detail::one_line(dictionary, 80) + "'");
+        fail_read(file, "its NumPy header is malformed: " + detail::quoted(dictionary, 80));
     return header;
 }
 
@@ -105,8 +105,7 @@ std::vector<Ray> read_rays(const std::filesystem::path& file) {
     const NpyHeader header = read_header(file, bytes);
     const std::string wanted =
         "; rays are little-endian float32 ('<f4') of shape (n, 8) in C order: origin, tmin, direction, tmax";
-    if (header.dtype != "<f4")
-        fail_read(file, "its dtype is '" + detail::one_line(header.dtype, 60) + "'" + wanted);
+    if (header.dtype != "<f4") fail_read(file, "its dtype is " + detail::quoted(header.dtype, 60) + wanted);
     const std::optional<std::uint64_t> count = row_count(header.shape);
     if (!count) fail_read(file, "its shape is (" + detail::one_line(header.shape, 60) + ")" + wanted);
     // Fortran order of one row, or of none, has the same bytes.

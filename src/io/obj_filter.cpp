@@ -81,7 +81,7 @@ class ObjFilter {
         std::string numbers;
         for (std::string_view word = words.word(); !word.empty(); word = words.word()) {
             if (const std::optional<float> value = parse_float(word); value && !std::isfinite(*value))
-                fail("'" + one_line(word, 40) + "' is not finite");
+                fail(quoted(word, 40) + " is not finite");
             numbers.append(numbers.empty() ? "" : " ").append(word);
         }
         return numbers;
@@ -109,8 +109,7 @@ class ObjFilter {
         const std::size_t slash = std::min(corner.find('/'), corner.size());
         const std::optional<std::int64_t> index = parse_integer(corner.substr(0, slash));
         if (!index)
-            fail("'" + one_line(corner, 40) +
-                 "' is no corner of a face; known are v, v/vt, v//vn and v/vt/vn");
+            fail(quoted(corner, 40) + " is no corner of a face; known are v, v/vt, v//vn and v/vt/vn");
         const std::uint64_t vertex = resolve(*index, vertices_, total_vertices_);
         if (vertex == 0)
             fail("vertex index " + std::to_string(*index) + " is out of range: there are " +

@@ -31,8 +31,7 @@ class PlyNumbers {
         if (word.empty()) truncated();
         const std::optional<float> value = parse_float(word);
         if (!value)
-            fail_read(file_,
-                      "'" + one_line(word, 40) + "' where element '" + element_name() + "' needs a number");
+            fail_read(file_, quoted(word, 40) + " where element '" + element_name() + "' needs a number");
         return *value;
     }
 
@@ -42,8 +41,8 @@ class PlyNumbers {
             if (word.empty()) truncated();
             const std::optional<std::int64_t> value = parse_integer(word);
             if (!value)
-                fail_read(file_, "'" + one_line(word, 40) + "' where element '" + element_name() +
-                                     "' needs an integer");
+                fail_read(file_,
+                          quoted(word, 40) + " where element '" + element_name() + "' needs an integer");
             return *value;
         }
         const double value = real(type);
@@ -156,8 +155,8 @@ void read_vertices(const std::filesystem::path& file, const PlyElement& element,
         if (places[i] >= 0) role[static_cast<std::size_t>(places[i])] = i;
     for (std::size_t i = 0; i < role.size(); ++i)
         if (role[i] >= 0 && element.properties[i].count_type)
-            fail_read(file, "vertex property '" + one_line(element.properties[i].name, 40) +
-                                "' must not be a list");
+            fail_read(file,
+                      "vertex property " + quoted(element.properties[i].name, 40) + " must not be a list");
 
     mesh.positions.resize(element.count);
     if (has_normals) mesh.normals.resize(element.count);

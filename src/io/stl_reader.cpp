@@ -122,12 +122,11 @@ class AsciiStl {
 
     void expect(std::string_view keyword) {
         const std::string_view word = next();
-        if (!equal_ignoring_case(word, keyword)) unexpected(word, "'" + std::string(keyword) + "'");
+        if (!equal_ignoring_case(word, keyword)) unexpected(word, quoted(keyword));
     }
 
     [[noreturn]] void unexpected(std::string_view word, std::string_view wanted) const {
-        fail_read(file_, "'" + one_line(word, 40) + "' where " + std::string(wanted) +
-                             " should stand: malformed STL");
+        fail_read(file_, quoted(word, 40) + " where " + std::string(wanted) + " should stand: malformed STL");
     }
 
     const std::filesystem::path& file_;

@@ -108,12 +108,14 @@ void add_default_lights(Scene& scene, const Camera& camera) {
     const glm::dvec3 eye = to_glm(camera.eye);
     const glm::dvec3 view = to_glm(camera.target) - eye;
     const ViewAxes axes = view_axes(view, to_glm(camera.up));
-    // Outside, the light stands as far off as the eye; inside it must stay in the room.
+    // Outside, the light stands as far off as the eye; inside it must stay in the room, and off its side walls.
+    const bool is_inside = box.contains(eye);
     const glm::dvec3 size = box.size();
-    const double reach = box.contains(eye) ? 0.25 * std::min({size.x, size.y, size.z}) : glm::length(view);
-    const glm::dvec3 shoulder = eye + (axes.up * 0.7 - axes.right * 0.5) * reach;
-    scene.point_lights.push_back({to_float3(shoulder), {0.75f, 0.73f, 0.7f}, 0});
-    scene.point_lights.push_back({camera.eye, {0.12f, 0.13f, 0.15f}, 0});
+    const double reach = is_inside ? 0.25 * std::min({size.x, size.y, size.z}) : glm::length(view);
+    const double aside = is_inside ? 0.3 : 0.7;
+    const glm::dvec3 shoulder = eye + (axes.up * 0.7 - axes.right * aside) * reach;
+    scene.point_lights.push_back({to_float3(shoulder), {0.6f, 0.58f, 0.55f}, 0});
+    scene.point_lights.push_back({camera.eye, {0.08f, 0.085f, 0.095f}, 0});
 }
 
 }  // namespace setka

@@ -72,6 +72,9 @@ TEST(Off, RefusesWhatIsWrong) {
                       "'x' where a coordinate");
     expect_unreadable(folder.write("e.off", "OFF\n3 1 0\n0 0 0\n1 0 nan\n0 1 0\n3 0 1 2\n"),
                       "vertex 1 of the mesh is not finite");
+    expect_unreadable(folder.write("h.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 4294967298\n"),
+                      "uses vertex 4294967298");
+    expect_unreadable(folder.write("i.off", "OFF\n3 1 0\n0 0 0\n1 0 1.5x\n0 1 0\n3 0 1 2\n"), "'1.5x'");
     expect_unreadable(folder.write("f.off", "OFF BINARY\n3 1 0\n0 0 0\n"), "binary OFF");
     expect_unreadable(folder.write("g.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 -2\n"), "'-2'");
 }
@@ -201,7 +204,8 @@ TEST(Obj, ReadsIndicesOfEveryKind) {
 TEST(Obj, TakesMaterialsAsWhittedMeansThem) {
     const Folder folder;
     (void)folder.write("m.mtl",
-                       "Tf 0 0 0\nnewmtl mirror\nKd 0.1 0.2 0.3\nKs 0.5 0.6 0.7\nNs 1e9\nillum 3\n"
+                       "Tf 0 0 0\nNs 1\nNi 1\nillum 2\nd 1\nKd 1 1 1\nmap_Kd t.png\nnewmtl mirror\nKd 0.1 "
+                       "0.2 0.3\nKs 0.5 0.6 0.7\nNs 1e9\nillum 3\n"
                        "newmtl glass\nKd 0 0 0\nd 0.25\nNi 1.33\nTf 0.9 1 0.8\nillum 7\nnewmtl lamp\nKe 2 3 "
                        "4\nmap_Kd absent.png\n");
     const Scene scene =
@@ -256,18 +260,21 @@ TEST(Normals, OfAFileAreReplacedIfOneIsBroken) {
 
 TEST(Polygons, ConcaveOnesAreCutWithoutOverlap) {
     const Folder folder;
-    // An arrow whose fan from the first corner would cover its notch.
-    const Scene scene =
-        load_scene(folder.write("a.off", "OFF\n4 1 0\n1 0 0\n0 1 0\n-1 0 0\n0 0.25 0\n4 0 1 2 3\n"));
-    double area = 0;
-    const std::vector<Float3> points = corners(scene);
-    for (std::size_t i = 0; i < points.size(); i += 3) {
-        const Float3 &a = points[i], &b = points[i + 1], &c = points[i + 2];
-        const double turn = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-        EXPECT_GT(turn, 0) << "the winding changed";
-        area += turn / 2;
+    // An arrow whose fan from the first corner would cover its notch, turning either way.
+    for (const char* order : {"4 0 1 2 3\n", "4 0 3 2 1\n"}) {
+        const Scene scene = load_scene(
+            folder.write("a.off", std::string("OFF\n4 1 0\n1 0 0\n0 1 0\n-1 0 0\n0 0.25 0\n") + order));
+        const double sign = order[4] == '1' ? 1 : -1;
+        double area = 0;
+        const std::vector<Float3> points = corners(scene);
+        for (std::size_t i = 0; i < points.size(); i += 3) {
+            const Float3 &a = points[i], &b = points[i + 1], &c = points[i + 2];
+            const double turn = (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+            EXPECT_GT(turn * sign, 0) << "the winding changed";
+            area += turn / 2;
+        }
+        EXPECT_NEAR(area * sign, 0.75, 1e-6);
     }
-    EXPECT_NEAR(area, 0.75, 1e-6);
 }
 
 }  // namespace

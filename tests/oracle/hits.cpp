@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// What does a ray hit? Section "Rays and hits", every ray against every triangle.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -92,9 +93,9 @@ struct WorkingRay {
     Vec3 o{}, d{};
     float pre = 1, s = 1, shift = 0, tmin = 0, tmax = 0;
     int kx = 0, ky = 1, kz = 2;
-    float sx = 0, sy = 0, sz = 1;
+    float sx = 0, sy = 0, sz = 1, unit = 1;
 
-    float user_t(float w) const { return ((w + shift) * pre) * s; }
+    float user_t(float w) const { return ((w + shift) * pre) * s + 0.0f; }
 };
 
 WorkingRay prepare(const World& world, const Ray& ray) {
@@ -119,7 +120,7 @@ WorkingRay prepare(const World& world, const Ray& ray) {
     Clip range = clip(world, work.o, work.d);
     if (range.misses) return work;
     const auto is_far = [&] { return range.w0 > world.extent || range.w1 < -world.extent; };
-    for (int turn = 0; turn < 8 && !range.misses && is_far(); ++turn) {
+    for (int turn = 0; turn < 16 && !range.misses && is_far(); ++turn) {
         const float way = range.w0 > world.extent ? range.w0 : range.w1;
         for (int axis = 0; axis < 3; ++axis) work.o[axis] = work.o[axis] + work.d[axis] * way;
         work.shift = work.shift + way;
@@ -127,6 +128,13 @@ WorkingRay prepare(const World& world, const Ray& ray) {
     }
     if (range.misses || is_far()) return work;
     work.misses = false;
+    for (int axis = 0; axis < 3; ++axis)
+        if (std::fabs(work.d[axis]) < 0x1p-48f) work.d[axis] = 0;
+    if (world.extent > 0) {
+        int power = 0;  // of two, just above the extent
+        (void)std::frexp(world.extent, &power);
+        work.unit = std::ldexp(1.0f, 20 - std::min(std::max(power - 1, -100), 100));
+    }
 
     const float x = std::fabs(work.d[0]), y = std::fabs(work.d[1]), z = std::fabs(work.d[2]);
     work.kz = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
@@ -156,6 +164,10 @@ Candidate test(const WorkingRay& ray, const WorldTriangle& triangle) {
     float V = x[0] * y[2] - y[0] * x[2];
     float W = x[1] * y[0] - y[1] * x[0];
     if (mixed_signs(U, V, W)) return {};
+    for (int k = 0; k < 3; ++k) {
+        x[k] = x[k] * ray.unit;
+        y[k] = y[k] * ray.unit;
+    }
     U = accurate(x[2], y[1], y[2], x[1]);
     V = accurate(x[0], y[2], y[0], x[2]);
     W = accurate(x[1], y[0], y[1], x[0]);

@@ -61,7 +61,8 @@ GridResolution resolution(const Bounds& bounds, std::uint32_t triangle_count, co
     for (int axis = 0; axis < 3; ++axis) side[axis] = double(bounds.upper[axis]) - double(bounds.lower[axis]);
     const double cells = double(options.density) * double(triangle_count);
     bool active[3] = {true, true, true};
-    double size = 1;
+    const double longest = std::max({side[0], side[1], side[2]});
+    double size = longest > 0 ? longest : 1;
     for (int left = 3; left > 0; --left) {
         double product = 1;
         int shortest = -1;
@@ -79,7 +80,6 @@ GridResolution resolution(const Bounds& bounds, std::uint32_t triangle_count, co
         }
         active[shortest] = false;
     }
-    const double longest = std::max({side[0], side[1], side[2]});
     size = std::max({size, longest / options.max_cells_per_axis, std::ldexp(1.0, -80)});
 
     GridResolution result;

@@ -38,7 +38,7 @@ typedef struct sk_axis {
 
 SK_FUNCTION sk_axis sk_make_axis(float origin, float direction, float working_direction, float start, sk_u32 dim) {
     sk_axis r;
-    const int parallel = sk_abs(working_direction) < SK_PARALLEL;
+    const int parallel = working_direction == 0.0f;
     r.origin = origin;
     r.speed = parallel ? 0.0f : sk_abs(direction);
     r.inverse = parallel ? SK_PARALLEL_INVERSE : 1.0f / r.speed;
@@ -64,8 +64,10 @@ SK_FUNCTION sk_span sk_limit(sk_working_ray ray) {
     sk_span r;
     const float to_w = 1.0f / ray.scale, pre = 1.0f / ray.pre;
     const float a = (ray.tmin * to_w) * pre, b = (ray.tmax * to_w) * pre;
-    const float start = (a - ray.shift) - (sk_abs(a) + sk_abs(ray.shift)) * 0x1p-20f;
-    const float end = (b - ray.shift) + (sk_abs(b) + sk_abs(ray.shift)) * 0x1p-20f;
+    /* Where t is subnormal its rounding is absolute; in working parameters that may be much. */
+    const float step = 0x1p-148f * pre, coarse = step + step * to_w;
+    const float start = (a - ray.shift) - ((sk_abs(a) + sk_abs(ray.shift)) * 0x1p-20f + coarse);
+    const float end = (b - ray.shift) + ((sk_abs(b) + sk_abs(ray.shift)) * 0x1p-20f + coarse);
     /* NaN from infinite limits compares false and leaves the box's interval. */
     r.w0 = start > ray.w0 ? start : ray.w0;
     r.w1 = end < ray.w1 ? end : ray.w1;

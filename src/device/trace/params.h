@@ -10,6 +10,7 @@ typedef struct sk_trace_params {
     float size[3];            /* upper - lower */
     float extent;             /* the largest size */
     float pad;                /* extent * 2^-16 */
+    float unit;               /* a power of two: extent * unit is in [2^20, 2^21), if extent is in [2^-100, 2^100] */
     setka_u32 mask;           /* of the query */
     setka_u32 filters;        /* 0: the mask lets every instance through */
     setka_u32 instance_count;

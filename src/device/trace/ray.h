@@ -10,10 +10,12 @@
 #include "device/math.h"
 #include "device/trace/params.h"
 
-/** Below this a component of a working direction counts as 0. */
+/** Below this a component of a direction counts as 0 on the way to the scene: its inverse could overflow. */
 #define SK_PARALLEL 0x1p-100f
+/** Below this it counts as 0 at the scene, where it moves a ray by less than any rounding. */
+#define SK_STRAIGHT 0x1p-48f
 /** The most times that an origin is moved towards the scene. */
-#define SK_APPROACHES 8u
+#define SK_APPROACHES 16u
 
 typedef struct sk_working_ray {
     sk_vec3 o, d;
@@ -23,6 +25,7 @@ typedef struct sk_working_ray {
     sk_u32 kx, ky, kz;         /* axes: kz is the direction's largest */
     float ox, oy, oz;          /* the origin along them */
     float sx, sy, sz;          /* shear */
+    float unit;                /* a power of two that keeps products of coordinates from underflow and overflow */
     int valid;                 /* 0: the ray misses everything */
 } sk_working_ray;
 
@@ -31,8 +34,8 @@ typedef struct sk_span {
     int meets;
 } sk_span;
 
-/** The user's parameter of a working one. */
-SK_FUNCTION float sk_user_t(sk_working_ray r, float w) { return ((w + r.shift) * r.pre) * r.scale; }
+/** The user's parameter of a working one, never -0. */
+SK_FUNCTION float sk_user_t(sk_working_ray r, float w) { return ((w + r.shift) * r.pre) * r.scale + 0.0f; }
 
 /** Narrows `span` to where q + w * d lies in [-pad, size + pad]. */
 SK_FUNCTION sk_span sk_clip_axis(sk_span span, float q, float d, float size, float pad) {
@@ -69,6 +72,8 @@ SK_FUNCTION int sk_is_far(sk_trace_params params, sk_span span) {
     return span.w0 > params.extent || span.w1 < -params.extent;
 }
 
+SK_FUNCTION float sk_straighten(float d) { return sk_abs(d) < SK_STRAIGHT ? 0.0f : d; }
+
 SK_FUNCTION sk_working_ray sk_prepare_ray(sk_trace_params params, SetkaRay ray) {
     sk_working_ray r;
     sk_span span;
@@ -86,7 +91,7 @@ SK_FUNCTION sk_working_ray sk_prepare_ray(sk_trace_params params, SetkaRay ray) 
     d = sk_scale(sk_scale(d, r.pre), r.scale);
 
     span = sk_clip_box(params, o, d);
-    /* A turn leaves an error of 2^-24 of the distance, so eight are enough for any two floats. */
+    /* A turn leaves an error of some 2^-20 of the distance: sixteen are more than any two floats need. */
     for (sk_u32 turn = 0u; turn < SK_APPROACHES && span.meets && sk_is_far(params, span); ++turn) {
         const float way = span.w0 > params.extent ? span.w0 : span.w1;
         o = sk_add(o, sk_scale(d, way));
@@ -97,7 +102,9 @@ SK_FUNCTION sk_working_ray sk_prepare_ray(sk_trace_params params, SetkaRay ray) 
     r.w0 = span.w0;
     r.w1 = span.w1;
     r.o = o;
+    d = sk_make3(sk_straighten(d.x), sk_straighten(d.y), sk_straighten(d.z));
     r.d = d;
+    r.unit = params.unit;
 
     const float ax = sk_abs(d.x), ay = sk_abs(d.y), az = sk_abs(d.z);
     r.kz = ax >= ay && ax >= az ? 0u : ay >= az ? 1u : 2u;

@@ -79,9 +79,12 @@ SK_FUNCTION sk_best sk_test_triangle(sk_working_ray ray, SK_GLOBAL const float* 
     float w = x1 * y0 - y1 * x0;
     sk_best r = best;
     if (!sk_mixed_signs(u, v, w)) {
-        u = sk_accurate_difference(x2, y1, y2, x1);
-        v = sk_accurate_difference(x0, y2, y0, x2);
-        w = sk_accurate_difference(x1, y0, y1, x0);
+        const float unit = ray.unit;
+        const float p0 = x0 * unit, p1 = x1 * unit, p2 = x2 * unit;
+        const float q0 = y0 * unit, q1 = y1 * unit, q2 = y2 * unit;
+        u = sk_accurate_difference(p2, q1, q2, p1);
+        v = sk_accurate_difference(p0, q2, q0, p2);
+        w = sk_accurate_difference(p1, q0, q1, p0);
         const float det = (u + v) + w;
         if (!sk_mixed_signs(u, v, w) && det != 0.0f) {
             const float at = ((u * (ray.sz * a0) + v * (ray.sz * a1)) + w * (ray.sz * a2)) / det;
