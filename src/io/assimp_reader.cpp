@@ -145,7 +145,7 @@ class SceneBuilder {
 
     void add_instance(const PlacedMesh& placed, const aiMatrix4x4& matrix, const aiNode& node) {
         if (placed.mesh == no_mesh) return;
-        const auto name = [&] { return "node " + quoted(node.mName.C_Str(), 60); };
+        const auto name = [&] { return "node " + in_quotes(node.mName.C_Str(), 60); };
         // Nodes may project as far as the format knows; instances cannot.
         if (matrix.d1 != 0 || matrix.d2 != 0 || matrix.d3 != 0 || matrix.d4 != 1)
             fail_read(file_, "the transform of " + name() + " is not affine: its last row must be 0 0 0 1");

@@ -25,7 +25,7 @@ std::string one_line(std::string_view text, std::size_t max_length) {
     return line;
 }
 
-std::string quoted(std::string_view text, std::size_t max_length) {
+std::string in_quotes(std::string_view text, std::size_t max_length) {
     std::string result = one_line(text, max_length);
     result.insert(result.begin(), '\'');
     return result += '\'';
@@ -33,12 +33,12 @@ std::string quoted(std::string_view text, std::size_t max_length) {
 
 void fail_read(const fs::path& file, std::string_view reason, std::source_location where) {
     throw Error(ErrorCategory::InvalidData,
-                "cannot read " + quoted(file.string(), 1000) + ": " + one_line(reason, 1000), where);
+                "cannot read " + in_quotes(file.string(), 1000) + ": " + one_line(reason, 1000), where);
 }
 
 void fail_write(const fs::path& file, std::string_view reason, std::source_location where) {
     throw Error(ErrorCategory::InvalidArgument,
-                "cannot write " + quoted(file.string(), 1000) + ": " + one_line(reason, 1000), where);
+                "cannot write " + in_quotes(file.string(), 1000) + ": " + one_line(reason, 1000), where);
 }
 
 std::string lower_extension(const fs::path& file) {

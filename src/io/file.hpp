@@ -23,7 +23,7 @@ inline constexpr std::string_view no_triangle = "it has no triangle: points and 
 [[nodiscard]] std::string one_line(std::string_view text, std::size_t max_length = 200);
 
 /// The same between quotes.
-[[nodiscard]] std::string quoted(std::string_view text, std::size_t max_length = 200);
+[[nodiscard]] std::string in_quotes(std::string_view text, std::size_t max_length = 200);
 
 /// Throws InvalidData: "cannot read 'FILE': REASON".
 [[noreturn]] void fail_read(const std::filesystem::path& file, std::string_view reason,

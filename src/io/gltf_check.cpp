@@ -159,7 +159,7 @@ class GltfChecker {
                 std::filesystem::is_regular_file(path, error) ? std::filesystem::file_size(path, error) : 0;
             if (error || !std::filesystem::is_regular_file(path, error))
                 fail_read(file_,
-                          "its " + what + " is in " + quoted(path.string()) + ", which cannot be read");
+                          "its " + what + " is in " + in_quotes(path.string()) + ", which cannot be read");
         }
         check_range(0, length, available, what);
     }

@@ -233,7 +233,7 @@ Json copy_gltf(const std::filesystem::path& file, const std::string& text) {
     Json copy = Copier(file).object(json, root, "glTF");
     const std::string version = copy.value("asset", Json::object()).value("version", std::string());
     if (version.empty() || version[0] != '2')
-        fail_read(file, "glTF version " + quoted(version, 20) + "; version 2 is read");
+        fail_read(file, "glTF version " + in_quotes(version, 20) + "; version 2 is read");
     check_extensions(file, json);
     // assimp looks at extensions only where they are announced.
     Json used = Json::array();

@@ -29,8 +29,9 @@ struct NpyHeader {
 /// The text of the value of `key` in a flat Python dictionary: a string without its quotes, a word, or a
 /// bracket's inside.
 std::string_view value_of(std::string_view dictionary, std::string_view key) {
-    std::size_t at = dictionary.find("'" + std::string(key) + "'");
-    if (at == dictionary.npos) at = dictionary.find("\"" + std::string(key) + "\"");
+    std::size_t at = dictionary.npos;
+    for (const char quote : {'\'', '"'})
+        if (at == dictionary.npos) at = dictionary.find(std::string(1, quote).append(key).append(1, quote));
     if (at == dictionary.npos) return {};
     at = dictionary.find(':', at);
     if (at == dictionary.npos) return {};
@@ -62,7 +63,7 @@ NpyHeader read_header(const std::filesystem::path& file, std::string_view bytes)
     NpyHeader header{value_of(dictionary, "descr"), value_of(dictionary, "fortran_order"),
                      value_of(dictionary, "shape"), begin + length};
     if (header.dtype.empty() || header.fortran_order.empty() || dictionary.find("shape") == dictionary.npos)
-        fail_read(file, "its NumPy header is malformed: " + detail::quoted(dictionary, 80));
+        fail_read(file, "its NumPy header is malformed: " + detail::in_quotes(dictionary, 80));
     return header;
 }
 
@@ -105,7 +106,8 @@ std::vector<Ray> read_rays(const std::filesystem::path& file) {
     const NpyHeader header = read_header(file, bytes);
     const std::string wanted =
         "; rays are little-endian float32 ('<f4') of shape (n, 8) in C order: origin, tmin, direction, tmax";
-    if (header.dtype != "<f4") fail_read(file, "its dtype is " + detail::quoted(header.dtype, 60) + wanted);
+    if (header.dtype != "<f4")
+        fail_read(file, "its dtype is " + detail::in_quotes(header.dtype, 60) + wanted);
     const std::optional<std::uint64_t> count = row_count(header.shape);
     if (!count) fail_read(file, "its shape is (" + detail::one_line(header.shape, 60) + ")" + wanted);
     // Fortran order of one row, or of none, has the same bytes.

@@ -21,13 +21,12 @@ constexpr std::string_view kept_as_they_are[] = {"v", "vn", "o", "g", "usemtl", 
 constexpr std::uint64_t max_name_comparisons = 100'000'000;
 
 /// A backslash at the end of a line joins it with the next.
-std::string join_lines(std::string text) {
+void join_lines(std::string& text) {
     for (std::size_t at = text.find('\\'); at != text.npos; at = text.find('\\', at + 1)) {
-        const std::size_t end = text.compare(at + 1, 2, "\r\n") == 0 ? at + 3 : at + 2;
-        if (end > text.size() || text[end - 1] != '\n') continue;
-        for (std::size_t i = at; i < end; ++i) text[i] = ' ';
+        const bool two = at + 2 < text.size() && text[at + 1] == '\r';
+        const std::size_t end = at + (two ? 3 : 2);
+        if (end <= text.size() && text[end - 1] == '\n') std::fill_n(&text[at], end - at, ' ');
     }
-    return text;
 }
 
 class ObjFilter {
@@ -81,7 +80,7 @@ class ObjFilter {
         std::string numbers;
         for (std::string_view word = words.word(); !word.empty(); word = words.word()) {
             if (const std::optional<float> value = parse_float(word); value && !std::isfinite(*value))
-                fail(quoted(word, 40) + " is not finite");
+                fail(in_quotes(word, 40) + " is not finite");
             numbers.append(numbers.empty() ? "" : " ").append(word);
         }
         return numbers;
@@ -109,7 +108,7 @@ class ObjFilter {
         const std::size_t slash = std::min(corner.find('/'), corner.size());
         const std::optional<std::int64_t> index = parse_integer(corner.substr(0, slash));
         if (!index)
-            fail(quoted(corner, 40) + " is no corner of a face; known are v, v/vt, v//vn and v/vt/vn");
+            fail(in_quotes(corner, 40) + " is no corner of a face; known are v, v/vt, v//vn and v/vt/vn");
         const std::uint64_t vertex = resolve(*index, vertices_, total_vertices_);
         if (vertex == 0)
             fail("vertex index " + std::to_string(*index) + " is out of range: there are " +
@@ -125,7 +124,7 @@ class ObjFilter {
     }
 
     void add_face(TextCursor& words) {
-        face_ = "f";
+        face_.assign(1, 'f');
         corner_count_ = 0;
         for (std::string_view word = words.word(); !word.empty(); word = words.word()) add_corner(word);
         if (corner_count_ < 3) return;
@@ -146,7 +145,7 @@ class ObjFilter {
 }  // namespace
 
 std::string filter_obj(const std::filesystem::path& file, std::string text) {
-    text = join_lines(std::move(text));
+    join_lines(text);
     return ObjFilter(file, text).filter();
 }
 

@@ -45,7 +45,7 @@ class OffReader {
         const std::string_view prefix = word.substr(0, end);
         if (prefix.find_first_of("4n") != prefix.npos)
             fail_read(file_,
-                      "vertices of other than three dimensions (" + quoted(word, 20) + ") are not read");
+                      "vertices of other than three dimensions (" + in_quotes(word, 20) + ") are not read");
         if (prefix.find_first_not_of("STCN") != prefix.npos)
             fail_read(file_, "it does not start with 'OFF', so it is no OFF file");
         has_normals_ = prefix.find('N') != prefix.npos;
@@ -60,7 +60,7 @@ class OffReader {
         if (word.empty()) truncated();
         const std::optional<std::int64_t> value = parse_integer(word);
         if (!value || *value < 0)
-            fail_read(file_, quoted(word, 40) + " where the number of " + what + " should stand");
+            fail_read(file_, in_quotes(word, 40) + " where the number of " + what + " should stand");
         return static_cast<std::uint64_t>(*value);
     }
 
@@ -69,7 +69,7 @@ class OffReader {
             const std::string_view word = text_.word();
             if (word.empty()) truncated();
             const std::optional<float> value = parse_float(word);
-            if (!value) fail_read(file_, quoted(word, 40) + " where a coordinate should stand");
+            if (!value) fail_read(file_, in_quotes(word, 40) + " where a coordinate should stand");
             return *value;
         };
         const float x = number(), y = number(), z = number();

@@ -33,14 +33,15 @@ PlyFormat read_format(const std::filesystem::path& file, TextCursor& words) {
     if (format == "ascii") return PlyFormat::Ascii;
     if (format == "binary_little_endian") return PlyFormat::LittleEndian;
     if (format == "binary_big_endian") return PlyFormat::BigEndian;
-    fail_read(file, "PLY format " + quoted(format, 40) +
+    fail_read(file, "PLY format " + in_quotes(format, 40) +
                         "; known are ascii, binary_little_endian and binary_big_endian");
 }
 
 PlyProperty read_property(const std::filesystem::path& file, TextCursor& words) {
     const auto type = [&](std::string_view name) {
         const std::optional<PlyType> known = type_named(name);
-        if (!known) fail_read(file, "unknown type " + quoted(name, 40) + " of a property in the PLY header");
+        if (!known)
+            fail_read(file, "unknown type " + in_quotes(name, 40) + " of a property in the PLY header");
         return *known;
     };
     PlyProperty property;
@@ -71,7 +72,7 @@ void check_counts(const std::filesystem::path& file, const PlyHeader& header, st
         const std::uint64_t row = min_row_bytes(element, header.format);
         if (row && element.count > left / row)
             fail_read(file, "the header promises " + std::to_string(element.count) + " of element " +
-                                quoted(element.name, 40) + ", which take at least " + std::to_string(row) +
+                                in_quotes(element.name, 40) + ", which take at least " + std::to_string(row) +
                                 " bytes each, but only " + std::to_string(left) +
                                 " bytes follow: the file is truncated or malformed");
         left -= row * element.count;
@@ -113,14 +114,15 @@ PlyHeader read_ply_header(const std::filesystem::path& file, std::string_view by
             PlyElement element;
             element.name = words.word_of_line();
             const std::optional<std::int64_t> count = parse_integer(words.word_of_line());
-            if (!count || *count < 0) fail_read(file, "a bad count in the PLY header: " + quoted(line, 60));
+            if (!count || *count < 0)
+                fail_read(file, "a bad count in the PLY header: " + in_quotes(line, 60));
             element.count = static_cast<std::uint64_t>(*count);
             header.elements.push_back(std::move(element));
         } else if (keyword == "property" && !header.elements.empty()) {
             header.elements.back().properties.push_back(read_property(file, words));
             if (++properties > max_properties) fail_read(file, "more than 1000 properties in the PLY header");
         } else {
-            fail_read(file, "cannot understand " + quoted(line, 60) + " in the PLY header");
+            fail_read(file, "cannot understand " + in_quotes(line, 60) + " in the PLY header");
         }
     }
     if (!format_seen) fail_read(file, "the PLY header has no format line");

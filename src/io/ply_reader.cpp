@@ -31,7 +31,7 @@ class PlyNumbers {
         if (word.empty()) truncated();
         const std::optional<float> value = parse_float(word);
         if (!value)
-            fail_read(file_, quoted(word, 40) + " where element '" + element_name() + "' needs a number");
+            fail_read(file_, in_quotes(word, 40) + " where element '" + element_name() + "' needs a number");
         return *value;
     }
 
@@ -42,7 +42,7 @@ class PlyNumbers {
             const std::optional<std::int64_t> value = parse_integer(word);
             if (!value)
                 fail_read(file_,
-                          quoted(word, 40) + " where element '" + element_name() + "' needs an integer");
+                          in_quotes(word, 40) + " where element '" + element_name() + "' needs an integer");
             return *value;
         }
         const double value = real(type);
@@ -156,7 +156,7 @@ void read_vertices(const std::filesystem::path& file, const PlyElement& element,
     for (std::size_t i = 0; i < role.size(); ++i)
         if (role[i] >= 0 && element.properties[i].count_type)
             fail_read(file,
-                      "vertex property " + quoted(element.properties[i].name, 40) + " must not be a list");
+                      "vertex property " + in_quotes(element.properties[i].name, 40) + " must not be a list");
 
     mesh.positions.resize(element.count);
     if (has_normals) mesh.normals.resize(element.count);

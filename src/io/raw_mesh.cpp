@@ -18,7 +18,7 @@ constexpr std::uint32_t unset = std::numeric_limits<std::uint32_t>::max();
 bool is_finite(const Float3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 std::string describe(const RawMesh& raw) {
-    return raw.name.empty() ? "the mesh" : "mesh " + quoted(raw.name, 60);
+    return raw.name.empty() ? "the mesh" : "mesh " + in_quotes(raw.name, 60);
 }
 
 void check_corners(const std::filesystem::path& file, const RawMesh& raw) {

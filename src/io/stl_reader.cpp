@@ -122,11 +122,12 @@ class AsciiStl {
 
     void expect(std::string_view keyword) {
         const std::string_view word = next();
-        if (!equal_ignoring_case(word, keyword)) unexpected(word, quoted(keyword));
+        if (!equal_ignoring_case(word, keyword)) unexpected(word, in_quotes(keyword));
     }
 
     [[noreturn]] void unexpected(std::string_view word, std::string_view wanted) const {
-        fail_read(file_, quoted(word, 40) + " where " + std::string(wanted) + " should stand: malformed STL");
+        fail_read(file_,
+                  in_quotes(word, 40) + " where " + std::string(wanted) + " should stand: malformed STL");
     }
 
     const std::filesystem::path& file_;
