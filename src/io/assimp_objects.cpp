@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Which camera and lights does an imported scene have? Those that are usable, in world space.
+/// Which transforms, camera and lights does an imported scene have? Those that are usable, in world space.
 #include "io/assimp_objects.hpp"
 
 #include <assimp/camera.h>
@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "core/exact_math.hpp"
+#include "io/file.hpp"
 
 namespace setka::io::detail {
 
@@ -75,6 +76,22 @@ double total_brightness(const Scene& scene) {
 }
 
 }  // namespace
+
+Matrix34 take_transform(const std::filesystem::path& file, const aiMatrix4x4& matrix, const aiNode& node) {
+    const auto fail = [&](const char* reason) {
+        fail_read(file, "the transform of node " + in_quotes(node.mName.C_Str(), 60) + reason);
+    };
+    // Nodes may project as far as the format knows; instances cannot.
+    if (matrix.d1 != 0 || matrix.d2 != 0 || matrix.d3 != 0 || matrix.d4 != 1)
+        fail(" is not affine: its last row must be 0 0 0 1");
+    Matrix34 transform;
+    for (unsigned row = 0; row < 3; ++row)
+        for (unsigned column = 0; column < 4; ++column) {
+            if (!std::isfinite(matrix[row][column])) fail(" is not finite");
+            transform.rows[row * 4 + column] = matrix[row][column];
+        }
+    return transform;
+}
 
 std::optional<Camera> take_camera(const aiScene& source, std::span<const double> vertical_fovs) {
     for (unsigned i = 0; i < source.mNumCameras && i < vertical_fovs.size(); ++i)

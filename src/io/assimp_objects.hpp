@@ -1,15 +1,23 @@
 // SPDX-License-Identifier: MIT
-/// Which camera and lights does an imported scene have?
+/// Which transforms, camera and lights does an imported scene have?
 #pragma once
 
+#include <assimp/matrix4x4.h>
+
+#include <filesystem>
 #include <optional>
 #include <span>
 
 #include "setka/scene.hpp"
 
+struct aiNode;
 struct aiScene;
 
 namespace setka::io::detail {
+
+/// The world transform of a node. Throws InvalidData if it is not affine or not finite.
+[[nodiscard]] Matrix34 take_transform(const std::filesystem::path& file, const aiMatrix4x4& matrix,
+                                      const aiNode& node);
 
 /// The first perspective camera of a glTF scene, placed by its node; nothing if none can be used.
 /// `vertical_fovs` holds the angle of each camera in radians: assimp 5.2 keeps it only as angle times aspect.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// How do OBJ and glTF files become scenes? assimp reads them without any of its own post-processing; meshes,
-/// nodes, cameras and lights are taken over here. Triangles, welding and normals are made as for every other
-/// format.
+/// nodes, skins, cameras and lights are taken over here. Triangles, welding and normals are made as for every
+/// other format.
 #include <assimp/mesh.h>
 #include <assimp/scene.h>
 
@@ -15,6 +15,7 @@
 #include "io/assimp_objects.hpp"
 #include "io/file.hpp"
 #include "io/readers.hpp"
+#include "io/skin.hpp"
 #include "io/unicode.hpp"
 
 namespace setka::io::detail {
@@ -85,7 +86,8 @@ class SceneBuilder {
             imported_.push_back(kind_ == Source::Obj ? convert_mtl(material, file_.parent_path())
                                                      : convert_gltf(material, source_, file_.parent_path()));
         }
-        for (unsigned i = 0; i < source_.mNumMeshes; ++i) add_mesh(*source_.mMeshes[i]);
+        const Skinner skinner(file_, source_);
+        for (unsigned i = 0; i < source_.mNumMeshes; ++i) add_mesh(*source_.mMeshes[i], skinner);
         add_instances();
         return std::move(scene_);
     }
@@ -96,13 +98,16 @@ class SceneBuilder {
     struct PlacedMesh {
         std::uint32_t mesh = no_mesh;  ///< without a triangle: no mesh
         std::uint32_t material = 0;
+        bool in_world = false;  ///< skinned: no node moves it
     };
 
-    void add_mesh(const aiMesh& source) {
+    void add_mesh(const aiMesh& source, const Skinner& skinner) {
         RawMesh raw = take_mesh(source, kind_);
+        PlacedMesh placed;
+        placed.in_world = source.HasBones();
+        if (placed.in_world) raw = skinner.pose(std::move(raw), source);
         const std::optional<Float3> colour = raw.colour;
         Mesh mesh = finish_mesh(file_, std::move(raw));
-        PlacedMesh placed;
         if (!mesh.triangles.empty()) {
             placed.mesh = static_cast<std::uint32_t>(scene_.meshes.size());
             placed.material = material_of(source.mMaterialIndex, colour);
@@ -145,19 +150,10 @@ class SceneBuilder {
 
     void add_instance(const PlacedMesh& placed, const aiMatrix4x4& matrix, const aiNode& node) {
         if (placed.mesh == no_mesh) return;
-        const auto name = [&] { return "node " + in_quotes(node.mName.C_Str(), 60); };
-        // Nodes may project as far as the format knows; instances cannot.
-        if (matrix.d1 != 0 || matrix.d2 != 0 || matrix.d3 != 0 || matrix.d4 != 1)
-            fail_read(file_, "the transform of " + name() + " is not affine: its last row must be 0 0 0 1");
         Instance instance;
         instance.mesh = placed.mesh;
         instance.material = placed.material;
-        for (unsigned row = 0; row < 3; ++row)
-            for (unsigned column = 0; column < 4; ++column) {
-                if (!std::isfinite(matrix[row][column]))
-                    fail_read(file_, "the transform of " + name() + " is not finite");
-                instance.transform.rows[row * 4 + column] = matrix[row][column];
-            }
+        if (!placed.in_world) instance.transform = take_transform(file_, matrix, node);
         scene_.instances.push_back(instance);
     }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 /// Can assimp be trusted with this glTF file? assimp 5.2 follows node cycles without end, drops triangles
 /// with an index out of range without a word, and assumes JSON types. So the JSON is copied through a schema
-/// of what setka reads (animations, skins, morph targets and unknown extensions stay behind), and every
+/// of what setka reads (animations, morph targets and unknown extensions stay behind), and every
 /// reference and range in the copy is checked.
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -18,6 +18,8 @@ using Json = nlohmann::json;
 
 constexpr std::uint64_t max_accessor_count = std::uint64_t(1) << 28;
 constexpr std::size_t max_node_depth = 256;
+/// Of all primitives that a skin moves; assimp takes a kilobyte for each.
+constexpr std::size_t max_joints = std::size_t(1) << 20;
 
 std::uint32_t little_endian(const std::string& bytes, std::size_t at) {
     std::uint32_t value = 0;
@@ -97,6 +99,7 @@ class GltfChecker {
             if (json_["images"][i].contains("bufferView"))
                 (void)target(json_["images"][i], "bufferView", "bufferViews");
         drop_dangling_textures(json_);
+        separate_skinned_meshes();
         CheckedGltf checked;
         for (std::size_t i = 0; i < size("meshes"); ++i) check_mesh(json_["meshes"][i], i, checked);
         for (std::size_t i = 0; i < size("cameras"); ++i) {
@@ -105,6 +108,7 @@ class GltfChecker {
             checked.vertical_fovs.push_back(camera.value("perspective", Json::object()).value("yfov", 0.0));
         }
         check_nodes();
+        for (std::size_t i = 0; i < size("skins"); ++i) check_skin(json_["skins"][i], i);
         checked.bytes = close_container(json_, container_);
         return checked;
     }
@@ -245,9 +249,7 @@ class GltfChecker {
         const std::uint64_t vertices = number(target(attributes, "POSITION", "accessors"), "count");
         for (const auto& [name, value] : attributes.items()) {
             const Json& accessor = target(attributes, name.c_str(), "accessors");
-            const bool is_colour = name.starts_with("COLOR");
-            if (!is_colour && (number(accessor, "componentType") != 5126 || accessor["type"] != "VEC3"))
-                fail_read(file_, name + " of " + what + " is not made of three floats, as it must be");
+            check_attribute(name, accessor, what);
             if (number(accessor, "count") != vertices)
                 fail_read(file_, name + " of " + what + " has another count than POSITION");
         }
@@ -264,13 +266,88 @@ class GltfChecker {
         return mode == 4 ? corners / 3 : mode >= 5 && corners > 2 ? corners - 2 : 0;
     }
 
+    void check_attribute(const std::string& name, const Json& accessor, const std::string& what) const {
+        const std::uint64_t component = number(accessor, "componentType");
+        const auto demand = [&](bool holds, const char* kind) {
+            if (!holds) fail_read(file_, name + " of " + what + " is not made of " + kind);
+        };
+        if (name == "JOINTS_0")
+            demand((component == 5121 || component == 5123) && accessor["type"] == "VEC4",
+                   "four unsigned integers of 8 or 16 bits, as it must be");
+        else if (name == "WEIGHTS_0")  // assimp takes the bytes of others for floats
+            demand(component == 5126 && accessor["type"] == "VEC4", "four floats; others are not read");
+        else if (!name.starts_with("COLOR"))
+            demand(component == 5126 && accessor["type"] == "VEC3", "three floats, as it must be");
+    }
+
+    /// A skinned mesh is a mesh of its own for each of its nodes: assimp keeps one skin a mesh.
+    void separate_skinned_meshes() {
+        std::vector<std::size_t> users(size("meshes"), 0);
+        std::size_t joints = 0;
+        for (std::size_t i = 0; i < size("nodes"); ++i) {
+            Json& node = json_["nodes"][i];
+            if (node.contains("mesh")) (void)target(node, "mesh", "meshes");
+            if (node.contains("skin")) (void)target(node, "skin", "skins");
+            if (!node.contains("mesh")) continue;
+            const auto index = node["mesh"].get<std::size_t>();
+            const bool shared = users[index]++ > 0;
+            if (!node.contains("skin")) continue;
+            const Json mesh = json_["meshes"][index];
+            joints += mesh.value("primitives", Json::array()).size() *
+                      target(node, "skin", "skins").value("joints", Json::array()).size();
+            if (joints > max_joints)
+                fail_read(file_, "its skins have more than 2^20 joints, counted for each primitive");
+            if (!shared) continue;
+            node["mesh"] = size("meshes");
+            json_["meshes"].push_back(mesh);
+        }
+    }
+
+    void check_skin(Json& skin, std::size_t index) {
+        const std::string what = "skin " + std::to_string(index);
+        const Json joints = skin.value("joints", Json::array());
+        for (const Json& joint : joints) {
+            const auto node = joint.get<std::size_t>();
+            (void)element(node, "nodes");
+            // assimp goes from joints to their children too, so a cycle would have a way in.
+            if (!in_scene_[node])
+                fail_read(file_, "malformed glTF: joint " + joint.dump() + " of " + what + " is in no scene");
+            json_["nodes"][node]["name"] = "node " + joint.dump();
+        }
+        if (!skin.contains("inverseBindMatrices"))
+            skin["inverseBindMatrices"] = add_identities(joints.size());
+        const Json& matrices = target(skin, "inverseBindMatrices", "accessors");
+        if (number(matrices, "componentType") != 5126 || matrices["type"] != "MAT4" ||
+            number(matrices, "count") < joints.size())
+            fail_read(file_, "malformed glTF: the inverseBindMatrices of " + what);
+    }
+
+    /// An accessor of identity matrices: assimp follows a null pointer where a skin has no matrices. Base64
+    /// takes three bytes at a time, so each matrix ends with two bytes of nothing.
+    [[nodiscard]] std::size_t add_identities(std::size_t count) {
+        constexpr std::size_t stride = 66;
+        std::string uri = "data:application/octet-stream;base64,";
+        for (std::size_t i = 0; i < count; ++i)
+            uri += "AACAPwAAAAAAAAAAAAAAAAAAAAAAAIA/AAAAAAAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAAAAAACAPwAA";
+        json_["buffers"].push_back({{"uri", uri}, {"byteLength", count * stride}});
+        json_["bufferViews"].push_back(
+            {{"buffer", size("buffers") - 1}, {"byteLength", count * stride}, {"byteStride", stride}});
+        json_["accessors"].push_back({{"bufferView", size("bufferViews") - 1},
+                                      {"componentType", 5126},
+                                      {"count", count},
+                                      {"type", "MAT4"}});
+        return size("accessors") - 1;
+    }
+
     /// Nodes are trees: each has one parent at most, and from the roots every path ends.
     void check_nodes() {
         std::vector<std::size_t> parents(size("nodes"), 0);
+        in_scene_.resize(parents.size());
         for (std::size_t i = 0; i < parents.size(); ++i) {
             Json& node = json_["nodes"][i];
-            // assimp ties cameras and lights to nodes by name.
-            if (node.contains("camera") || node.contains("extensions"))
+            // assimp ties cameras, lights and joints to nodes by name.
+            if (node.contains("camera") || node.contains("extensions") ||
+                node.value("name", std::string()).starts_with("node "))
                 node["name"] = "node " + std::to_string(i);
             if (node.contains("mesh")) (void)target(node, "mesh", "meshes");
             if (node.contains("camera")) (void)target(node, "camera", "cameras");
@@ -298,7 +375,7 @@ class GltfChecker {
             }
     }
 
-    void check_depth(std::size_t root) const {
+    void check_depth(std::size_t root) {
         std::vector<std::pair<std::size_t, std::size_t>> open{{root, 1}};
         while (!open.empty()) {
             const auto [node, depth] = open.back();
@@ -306,6 +383,7 @@ class GltfChecker {
             if (depth > max_node_depth)
                 fail_read(file_,
                           "its nodes are nested more than " + std::to_string(max_node_depth) + " deep");
+            in_scene_[node] = true;
             for (const Json& child : json_["nodes"][node].value("children", Json::array()))
                 open.emplace_back(child.get<std::size_t>(), depth + 1);
         }
@@ -328,6 +406,7 @@ class GltfChecker {
     const std::filesystem::path& file_;
     Json json_;
     const Container& container_;
+    std::vector<bool> in_scene_;  ///< of each node: some scene reaches it
 };
 
 }  // namespace

@@ -89,12 +89,14 @@ constexpr Key node_extensions[] = {{"KHR_lights_punctual", Type::Object, light_o
 constexpr Key node[] = {{"name", Type::Text},
                         {"children", Type::Indices},
                         {"mesh", Type::Index},
+                        {"skin", Type::Index},
                         {"camera", Type::Index},
                         {"matrix", Type::Numbers, {}, 16},
                         {"translation", Type::Numbers, {}, 3},
                         {"rotation", Type::Numbers, {}, 4},
                         {"scale", Type::Numbers, {}, 3},
                         {"extensions", Type::Object, node_extensions}};
+constexpr Key skin[] = {{"inverseBindMatrices", Type::Index}, {"joints", Type::Indices}};
 constexpr Key scene[] = {{"nodes", Type::Indices}};
 constexpr Key asset[] = {{"version", Type::Text}};
 constexpr Key root[] = {{"asset", Type::Object, asset},
@@ -102,6 +104,7 @@ constexpr Key root[] = {{"asset", Type::Object, asset},
                         {"scenes", Type::Objects, scene},
                         {"nodes", Type::Objects, node},
                         {"meshes", Type::Objects, mesh},
+                        {"skins", Type::Objects, skin},
                         {"accessors", Type::Objects, accessor},
                         {"bufferViews", Type::Objects, view},
                         {"buffers", Type::Objects, buffer},
@@ -111,7 +114,7 @@ constexpr Key root[] = {{"asset", Type::Object, asset},
                         {"cameras", Type::Objects, camera},
                         {"extensions", Type::Object, root_extensions}};
 
-constexpr const char* attributes_read[] = {"POSITION", "NORMAL", "COLOR_0"};
+constexpr const char* attributes_read[] = {"POSITION", "NORMAL", "COLOR_0", "JOINTS_0", "WEIGHTS_0"};
 constexpr const char* extensions_read[] = {"KHR_lights_punctual", "KHR_materials_transmission",
                                            "KHR_materials_pbrSpecularGlossiness"};
 

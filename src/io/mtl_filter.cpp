@@ -52,16 +52,28 @@ std::string_view rest_of(TextCursor& words) {
     return rest.starts_with('-') && blank != rest.npos ? rest.substr(blank + 1) : rest;
 }
 
+/// 3ds Max writes `d 1` and `Tr 1` for what is opaque: `Tr` is believed only where the material states no
+/// `d`.
+struct Transparency {
+    std::string statement;  ///< the last Tr, held back
+    bool has_d = false;
+
+    [[nodiscard]] std::string_view believed() const { return has_d ? std::string_view() : statement; }
+};
+
 }  // namespace
 
 std::string filter_mtl(std::string_view text) {
     std::string output = "# reduced to what is read\n";
     bool in_material = false;
     std::size_t count = 0;
+    Transparency transparency;
     for (TextCursor lines(text); !lines.at_end();) {
         TextCursor words(lines.line());
         const std::string_view keyword = words.word();
         if (keyword == "newmtl") {
+            output.append(transparency.believed());
+            transparency = {};
             const std::string_view name = rest_of(words);
             in_material = !name.empty() && count++ < max_materials;
             // Defaults of our own; the exponent also tells a material that is defined from one that is only
@@ -72,13 +84,21 @@ std::string filter_mtl(std::string_view text) {
         if (const std::string_view name = keyword == "map_Kd" ? rest_of(words) : std::string_view();
             !name.empty())
             output.append("map_Kd ").append(name).append("\n");
-        for (const Statement& statement : statements)
-            if (keyword == statement.keyword)
-                if (const auto values = numbers(words, statement.number_count))
-                    output.append(keyword)
-                        .append(keyword == "Ns" && *parse_float(values->substr(1)) < 1 ? " 1" : *values)
-                        .append("\n");
+        for (const Statement& statement : statements) {
+            if (keyword != statement.keyword) continue;
+            const auto values = numbers(words, statement.number_count);
+            if (!values) continue;
+            if (keyword == "Tr") {
+                transparency.statement = "Tr" + *values + "\n";
+                continue;
+            }
+            transparency.has_d = transparency.has_d || keyword == "d";
+            output.append(keyword)
+                .append(keyword == "Ns" && *parse_float(values->substr(1)) < 1 ? " 1" : *values)
+                .append("\n");
+        }
     }
+    output.append(transparency.believed());
     return output;
 }
 

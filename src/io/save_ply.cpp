@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 /// How is a scene written as PLY? All instances in world space, as one list of vertices and one of triangles.
 #include <bit>
-#include <cmath>
 #include <cstring>
 
 #include "io/file.hpp"
+#include "io/transform_normal.hpp"
 #include "scene/transform.hpp"
 #include "setka/io.hpp"
 
@@ -42,25 +42,6 @@ class PlyWriter {
     std::string block_;
 };
 
-/// Normals are moved by the cofactors of the matrix, which need no inverse and keep mirrored surfaces right
-/// side out.
-Float3 transform_normal(const Matrix34& matrix, const Float3& n) {
-    const auto& m = matrix.rows;
-    const double c[3][3] = {
-        {double(m[5]) * m[10] - double(m[6]) * m[9], double(m[6]) * m[8] - double(m[4]) * m[10],
-         double(m[4]) * m[9] - double(m[5]) * m[8]},
-        {double(m[9]) * m[2] - double(m[10]) * m[1], double(m[10]) * m[0] - double(m[8]) * m[2],
-         double(m[8]) * m[1] - double(m[9]) * m[0]},
-        {double(m[1]) * m[6] - double(m[2]) * m[5], double(m[2]) * m[4] - double(m[0]) * m[6],
-         double(m[0]) * m[5] - double(m[1]) * m[4]}};
-    double v[3];
-    for (int i = 0; i < 3; ++i) v[i] = c[i][0] * n.x + c[i][1] * n.y + c[i][2] * n.z;
-    const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    if (!(length > 0) || !std::isfinite(length)) return n;
-    return {static_cast<float>(v[0] / length), static_cast<float>(v[1] / length),
-            static_cast<float>(v[2] / length)};
-}
-
 }  // namespace
 
 void save_ply(const std::filesystem::path& file, const Scene& scene) {
@@ -94,7 +75,7 @@ void save_ply(const std::filesystem::path& file, const Scene& scene) {
                 writer.vector(moves ? transform_point(instance.transform, mesh.positions[i])
                                     : mesh.positions[i]);
                 if (has_normals)
-                    writer.vector(moves ? transform_normal(instance.transform, mesh.normals[i])
+                    writer.vector(moves ? detail::transform_normal(instance.transform, mesh.normals[i])
                                         : mesh.normals[i]);
             }
         }
