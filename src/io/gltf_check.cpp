@@ -282,25 +282,28 @@ class GltfChecker {
 
     /// A skinned mesh is a mesh of its own for each of its nodes: assimp keeps one skin a mesh.
     void separate_skinned_meshes() {
-        std::vector<std::size_t> users(size("meshes"), 0);
+        std::vector<bool> taken(size("meshes"));
         std::size_t joints = 0;
-        for (std::size_t i = 0; i < size("nodes"); ++i) {
-            Json& node = json_["nodes"][i];
-            if (node.contains("mesh")) (void)target(node, "mesh", "meshes");
-            if (node.contains("skin")) (void)target(node, "skin", "skins");
-            if (!node.contains("mesh")) continue;
-            const auto index = node["mesh"].get<std::size_t>();
-            const bool shared = users[index]++ > 0;
-            if (!node.contains("skin")) continue;
-            const Json mesh = json_["meshes"][index];
-            joints += mesh.value("primitives", Json::array()).size() *
-                      target(node, "skin", "skins").value("joints", Json::array()).size();
-            if (joints > max_joints)
-                fail_read(file_, "its skins have more than 2^20 joints, counted for each primitive");
-            if (!shared) continue;
-            node["mesh"] = size("meshes");
-            json_["meshes"].push_back(mesh);
-        }
+        for (const bool skinned : {false, true})
+            for (std::size_t i = 0; i < size("nodes"); ++i) {
+                Json& node = json_["nodes"][i];
+                if (!node.contains("mesh") || node.contains("skin") != skinned) continue;
+                const Json mesh = target(node, "mesh", "meshes");
+                const auto index = node["mesh"].get<std::size_t>();
+                if (skinned) joints += joint_count(node, mesh);
+                if (joints > max_joints)
+                    fail_read(file_, "its skins have more than 2^20 joints, counted for each primitive");
+                if (skinned && taken[index]) {
+                    node["mesh"] = size("meshes");
+                    json_["meshes"].push_back(mesh);
+                }
+                taken[index] = true;
+            }
+    }
+
+    [[nodiscard]] std::size_t joint_count(const Json& node, const Json& mesh) const {
+        return mesh.value("primitives", Json::array()).size() *
+               target(node, "skin", "skins").value("joints", Json::array()).size();
     }
 
     void check_skin(Json& skin, std::size_t index) {
@@ -350,6 +353,7 @@ class GltfChecker {
                 node.value("name", std::string()).starts_with("node "))
                 node["name"] = "node " + std::to_string(i);
             if (node.contains("mesh")) (void)target(node, "mesh", "meshes");
+            if (node.contains("skin")) (void)target(node, "skin", "skins");
             if (node.contains("camera")) (void)target(node, "camera", "cameras");
             for (const Json& child : node.value("children", Json::array())) {
                 (void)element(child.get<std::uint64_t>(), "nodes");

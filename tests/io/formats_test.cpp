@@ -227,6 +227,21 @@ TEST(Obj, TakesMaterialsAsWhittedMeansThem) {
         << "a material that no file defines is the default one";
 }
 
+TEST(Obj, BelievesTrOnlyWhereTheMaterialStatesNoD) {
+    const Folder folder;
+    // 3ds Max writes "d 1" and "Tr 1" for what is opaque.
+    (void)folder.write("m.mtl",
+                       "newmtl max\nd 1\nTr 1\nnewmtl turned\nTr 1\n  d 0.75\nKd 0 0 0\n"
+                       "newmtl alone\nTr 0.25\nnewmtl none\nnewmtl last\nKd 0 0 0\nTr 0.5\n");
+    const Scene scene = load_scene(
+        folder.write("a.obj",
+                     "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl max\nf 1 2 3\nusemtl turned\n"
+                     "f 1 2 3\nusemtl alone\nf 1 2 3\nusemtl none\nf 1 2 3\nusemtl last\nf 1 2 3\n"));
+    std::vector<float> transparencies;
+    for (const Material& material : scene.materials) transparencies.push_back(material.transparency);
+    EXPECT_THAT(transparencies, ElementsAre(0, 0.25f, 0.25f, 0, 0.5f));
+}
+
 TEST(Obj, TakesTheMeanColourOfATexture) {
     const Folder folder;
     Image image{2, 1, {{0, 0, 0}, {0, 0, 0}}, {255, 0, 0, 255, 255, 0}};
