@@ -12,9 +12,9 @@
 namespace setka::io {
 
 /// Reads OBJ+MTL, PLY, STL, OFF, glTF and GLB: node transforms, skins at their rest pose, materials, cameras and lights;
-/// polygons become triangles,
-/// points and lines are dropped. Throws InvalidData, in one line with the file's name, for a file that is missing, empty,
-/// truncated or malformed, of an unknown format, without any triangle, with a non-finite vertex or an index out of range.
+/// polygons become triangles, points and lines are dropped. Throws InvalidData, in one line with the file's name, for a file
+/// that is missing, empty, truncated or malformed, of an unknown format, without any triangle, with a non-finite vertex or an
+/// index out of range.
 [[nodiscard]] Scene load_scene(const std::filesystem::path& file);
 /// All files in one scene, in order.
 [[nodiscard]] Scene load_scene(std::span<const std::filesystem::path> files);
