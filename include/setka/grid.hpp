@@ -48,7 +48,7 @@ class GridPlan {
     [[nodiscard]] std::uint64_t row_count() const noexcept { return row_count_; }
     /// Bytes of the finished grid's sections.
     [[nodiscard]] std::uint64_t table_bytes() const noexcept { return table_bytes_; }
-    /// The most bytes live at any time of build(), tables and this plan included, beyond the scene itself. Exact.
+    /// The most bytes live at any time of plan() and build(), tables included, beyond the scene itself. Exact.
     [[nodiscard]] std::uint64_t peak_bytes() const noexcept { return peak_bytes_; }
 
   private:
