@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
-#define XXH_INLINE_ALL
-#include <xxhash.h>
-
 #include "accel/world_geometry.hpp"
+#include "core/digest.hpp"
 #include "setka/grid.hpp"
 
 namespace setka {
@@ -24,17 +22,12 @@ std::vector<Section> Grid::sections() const {
 }
 
 Digest Grid::digest(Queue& queue) const {
-    XXH3_state_t state;
-    XXH3_128bits_reset(&state);
-    const auto add = [&](const auto& values) {
-        XXH3_128bits_update(&state, values.data(), values.size() * sizeof(values[0]));
-    };
-    XXH3_128bits_update(&state, &header_, sizeof(header_));
-    add(queue.download(offsets_));
-    add(queue.download(counts_));
-    add(queue.download(references_));
-    const XXH128_hash_t hash = XXH3_128bits_digest(&state);
-    return {hash.high64, hash.low64};
+    Digester digester;
+    digester.add(std::as_bytes(std::span(&header_, 1)));
+    digester.add(queue.download(offsets_));
+    digester.add(queue.download(counts_));
+    digester.add(queue.download(references_));
+    return digester.digest();
 }
 
 }  // namespace setka

@@ -8,7 +8,8 @@
 
 #include "cli/command.hpp"
 #include "cli/grid_statistics.hpp"
-#include "cli/measure.hpp"
+#include "cli/text.hpp"
+#include "workload/measure.hpp"
 #include "cli/options.hpp"
 #include "cli/scene_input.hpp"
 
@@ -30,7 +31,7 @@ struct Report {
     std::uint64_t scene_bytes = 0;
     std::uint64_t planned_peak_bytes = 0;
     std::uint64_t peak_bytes = 0;  ///< measured, without the scene
-    Measurement time;
+    workload::Measurement time;
     GridStatistics statistics;
     Digest digest;
 };
@@ -107,7 +108,7 @@ void print_text(const std::string& name, const Grid& grid, const Report& report)
     report.scene_bytes = device.memory_in_use_bytes();
     device.reset_peak_memory();
     std::optional<Grid> grid;
-    report.time = measure(queue, options.repeats, [&] {
+    report.time = workload::measure(queue, options.repeats, [&] {
         grid.reset();  // so that its memory is free for the next one
         GridPlan plan = builder->plan(queue, device_scene);
         report.planned_peak_bytes = plan.peak_bytes();

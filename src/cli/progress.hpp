@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "cli/measure.hpp"
+#include "workload/measure.hpp"
 
 namespace setka::cli {
 
@@ -33,7 +33,7 @@ class Progress {
     std::string step_;
     int tenths_ = -1;
     double drawn_ms_ = 0;
-    Stopwatch watch_;
+    workload::Stopwatch watch_;
 };
 
 void add_progress_option(CLI::App& app, ProgressMode& mode);

@@ -7,7 +7,8 @@
 #include <optional>
 
 #include "cli/command.hpp"
-#include "cli/measure.hpp"
+#include "cli/text.hpp"
+#include "workload/measure.hpp"
 #include "cli/options.hpp"
 #include "cli/progress.hpp"
 #include "cli/scene_input.hpp"
@@ -108,7 +109,7 @@ void print_text(const Options& options, const Device& device, const DeviceScene&
     Times times;
 
     progress.update("loading", 0);
-    const Stopwatch load_watch;
+    const workload::Stopwatch load_watch;
     Scene scene = options.input.load();
     turn_up(scene, options.up);
     scene.validate();
@@ -119,14 +120,14 @@ void print_text(const Options& options, const Device& device, const DeviceScene&
     const Device device = options.device.open();
     Queue queue = device.make_queue();
     progress.update("building", 0);
-    const Stopwatch build_watch;
+    const workload::Stopwatch build_watch;
     const DeviceScene device_scene(queue, scene);
     scene = {};
     const auto structure = options.structure.build(queue, device_scene);
     queue.finish();
     times.build_ms = build_watch.elapsed_ms();
 
-    const Stopwatch render_watch;
+    const workload::Stopwatch render_watch;
     const Image image = renderer.render(queue, device_scene, *structure, camera);
     times.render_ms = render_watch.elapsed_ms();
     io::write_image(options.output, image);

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.hpp"
-#include "cli/measure.hpp"
+#include "cli/text.hpp"
 #include "cli/options.hpp"
 #include "cli/scene_input.hpp"
 #include "setka/io.hpp"

@@ -10,7 +10,8 @@
 
 #include "cli/command.hpp"
 #include "cli/grid_statistics.hpp"
-#include "cli/measure.hpp"
+#include "cli/text.hpp"
+#include "workload/measure.hpp"
 #include "cli/options.hpp"
 #include "cli/scene_input.hpp"
 #include "cli/structure.hpp"
@@ -35,7 +36,7 @@ struct Options {
 /// What the trace found, and how long it took.
 struct Result {
     std::uint64_t hit_count = 0;
-    Measurement time;
+    workload::Measurement time;
 };
 
 [[nodiscard]] Result trace(Queue& queue, const Structure& structure, const Options& options,
@@ -46,13 +47,13 @@ struct Result {
     if (options.any_hit) {
         const auto flags = queue.make_buffer<std::uint32_t>(rays.size(), "occlusion flags");
         result.time =
-            measure(queue, options.repeats, [&] { tracer.any_hit(queue, structure, device_rays, flags); });
+            workload::measure(queue, options.repeats, [&] { tracer.any_hit(queue, structure, device_rays, flags); });
         const auto occluded = queue.download(flags);
         result.hit_count = static_cast<std::uint64_t>(std::ranges::count(occluded, 1u));
         if (!options.output.empty()) io::write_occlusion(options.output, occluded);
     } else {
         const auto device_hits = queue.make_buffer<Hit>(rays.size(), "hits");
-        result.time = measure(queue, options.repeats,
+        result.time = workload::measure(queue, options.repeats,
                               [&] { tracer.closest_hit(queue, structure, device_rays, device_hits); });
         const auto hits = queue.download(device_hits);
         result.hit_count = static_cast<std::uint64_t>(
@@ -72,7 +73,7 @@ struct Result {
     const auto structure = options.structure.build(queue, device_scene);
     const Result result = trace(queue, *structure, options, rays);
 
-    const Measurement& time = result.time;
+    const workload::Measurement& time = result.time;
     const double mray = share(rays.size(), 1000000);
     if (options.as_json) {
         const nlohmann::ordered_json json{

@@ -11,10 +11,11 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/command.hpp"
-#include "cli/measure.hpp"
+#include "cli/text.hpp"
+#include "workload/measure.hpp"
 #include "cli/options.hpp"
 #include "cli/progress.hpp"
-#include "cli/random_rays.hpp"
+#include "workload/random_rays.hpp"
 #include "cli/scene_input.hpp"
 
 namespace setka::cli {
@@ -40,13 +41,13 @@ struct KindTally {
 
 /// What was compared, by kind of ray, and the first disagreements in words.
 struct Tally {
-    std::array<KindTally, ray_kind_count> kinds;
+    std::array<KindTally, workload::ray_kind_count> kinds;
     std::uint64_t mismatches = 0;
     std::vector<std::string> shown;
 
     void add_mismatch(std::uint64_t index, const std::string& text) {
         ++mismatches;
-        ++kinds[std::size_t(RandomRays::kind(index))].mismatches;
+        ++kinds[std::size_t(workload::RandomRays::kind(index))].mismatches;
         if (shown.size() < most_shown) shown.push_back(text);
     }
 };
@@ -61,7 +62,7 @@ struct Tally {
 [[nodiscard]] std::string describe(std::uint64_t index, const Ray& ray) {
     return fmt::format(
         "ray {} ({}): origin {:.9g},{:.9g},{:.9g} direction {:.9g},{:.9g},{:.9g} t {:.9g} to {:.9g}", index,
-        to_string(RandomRays::kind(index)), ray.origin[0], ray.origin[1], ray.origin[2], ray.direction[0],
+        to_string(workload::RandomRays::kind(index)), ray.origin[0], ray.origin[1], ray.origin[2], ray.direction[0],
         ray.direction[1], ray.direction[2], ray.tmin, ray.tmax);
 }
 
@@ -85,7 +86,7 @@ void compare(Queue& queue, const Grid& grid, const BruteForce& brute_force, std:
     Tracer().closest_hit(queue, brute_force, device_rays, device_hits);
     const std::vector<Hit> expected = queue.download(device_hits);
     for (std::size_t i = 0; i < rays.size(); ++i) {
-        KindTally& kind = tally.kinds[std::size_t(RandomRays::kind(first + i))];
+        KindTally& kind = tally.kinds[std::size_t(workload::RandomRays::kind(first + i))];
         ++kind.rays;
         kind.hits += expected[i].primitive != SETKA_NO_HIT;
     }
@@ -110,9 +111,9 @@ void compare(Queue& queue, const Grid& grid, const BruteForce& brute_force, std:
 void print_json(const Options& options, const Device& device, const Grid& grid, const Tally& tally,
                 double wall_ms) {
     nlohmann::ordered_json kinds;
-    for (std::size_t i = 0; i < ray_kind_count; ++i) {
+    for (std::size_t i = 0; i < workload::ray_kind_count; ++i) {
         const KindTally& kind = tally.kinds[i];
-        kinds[to_string(RayKind(i))] = {
+        kinds[to_string(workload::RayKind(i))] = {
             {"rays", kind.rays}, {"hits", kind.hits}, {"mismatches", kind.mismatches}};
     }
     const nlohmann::ordered_json json{
@@ -137,9 +138,9 @@ void print_text(const Options& options, const Device& device, const Grid& grid, 
     fmt::print("{}: {} triangles, density {:g}, grid {} x {} x {}, {} ({})\n", options.input.name(),
                grouped(header.triangle_count), options.grid.density, header.dims[0], header.dims[1],
                header.dims[2], device.info().id, device.info().name);
-    for (std::size_t i = 0; i < ray_kind_count; ++i) {
+    for (std::size_t i = 0; i < workload::ray_kind_count; ++i) {
         const KindTally& kind = tally.kinds[i];
-        fmt::print("{:<13} {:>11} rays, {:>11} hits, {} mismatches\n", to_string(RayKind(i)),
+        fmt::print("{:<13} {:>11} rays, {:>11} hits, {} mismatches\n", to_string(workload::RayKind(i)),
                    grouped(kind.rays), grouped(kind.hits), grouped(kind.mismatches));
     }
     for (const std::string& text : tally.shown) fmt::print("{}\n", text);
@@ -158,11 +159,11 @@ void print_text(const Options& options, const Device& device, const Grid& grid, 
     const DeviceScene device_scene(queue, scene);
     const Grid grid = make_grid_builder(options.grid)->build(queue, device_scene);
     const BruteForce brute_force = BruteForce::build(queue, device_scene);
-    const RandomRays make_ray(scene, grid.header(), options.seed);
+    const workload::RandomRays make_ray(scene, grid.header(), options.seed);
 
     Tally tally;
     Progress progress(options.progress);
-    const Stopwatch watch;
+    const workload::Stopwatch watch;
     std::vector<Ray> rays;
     for (std::uint64_t first = 0; first < options.rays; first += batch_rays) {
         rays.clear();

@@ -8,7 +8,7 @@
 
 #include "setka/scene.hpp"
 
-namespace setka::cli {
+namespace setka::workload {
 
 /// SplitMix64 (Steele, Lea & Flood 2014): the same numbers on every machine, from any seed.
 class Random {
@@ -59,4 +59,4 @@ class RandomRays {
     std::vector<std::uint64_t> starts_;  ///< the first scene triangle of each instance, then the total
 };
 
-}  // namespace setka::cli
+}  // namespace setka::workload

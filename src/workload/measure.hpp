@@ -5,12 +5,11 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
-#include <string>
 #include <vector>
 
 #include "setka/device.hpp"
 
-namespace setka::cli {
+namespace setka::workload {
 
 class Stopwatch {
   public:
@@ -37,9 +36,4 @@ struct Measurement {
 /// 0 for an empty list, the mean of the middle two for an even count.
 [[nodiscard]] double median(std::vector<double> values);
 
-/// 1234567 as "1,234,567".
-[[nodiscard]] std::string grouped(std::uint64_t number);
-/// 1536 as "1.5 KiB".
-[[nodiscard]] std::string as_bytes(std::uint64_t size_bytes);
-
-}  // namespace setka::cli
+}  // namespace setka::workload

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 /// Which rays find mistakes? See the header. Only + - * / on floats, so that every machine traces the same
 /// rays.
-#include "cli/random_rays.hpp"
+#include "workload/random_rays.hpp"
 
 #include <algorithm>
 #include <limits>
 
 #include "scene/transform.hpp"
 
-namespace setka::cli {
+namespace setka::workload {
 
 namespace {
 
@@ -184,4 +184,4 @@ RandomRays::WorldTriangle RandomRays::random_triangle(Random& random) const {
     return {{vertex(triangle.a), vertex(triangle.b), vertex(triangle.c)}};
 }
 
-}  // namespace setka::cli
+}  // namespace setka::workload

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+/// Which scene is meant by a name? See the header.
+#include "workload/named_scene.hpp"
+
+#include <algorithm>
+#include <charconv>
+
+#include "setka/error.hpp"
+#include "setka/scenes.hpp"
+#include "workload/snapshot.hpp"
+#ifdef SETKA_HAS_IO
+#include "setka/io.hpp"
+#endif
+
+namespace setka::workload {
+
+std::optional<Scene> NamedScene::load(const std::filesystem::path& folder) const {
+    const std::size_t colon = name.find(':');
+    const std::string first = name.substr(0, colon);
+    if (std::ranges::find(built_in_scenes(), first, &BuiltInScene::name) != built_in_scenes().end()) {
+        std::uint64_t triangles = 0;
+        const char* const end = name.data() + name.size();
+        if (colon != std::string::npos && std::from_chars(name.data() + colon + 1, end, triangles).ptr != end)
+            throw Error(ErrorCategory::InvalidArgument, "'" + name + "' has no size after the colon");
+        return make_scene(first, triangles);
+    }
+#ifdef SETKA_HAS_IO
+    if (std::filesystem::exists(folder / name)) return io::load_scene(folder / name);
+#endif
+    const std::filesystem::path snapshot = folder / (name + ".snapshot");
+    if (std::filesystem::exists(snapshot)) return read_snapshot(snapshot);
+    return std::nullopt;
+}
+
+}  // namespace setka::workload

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+/// Which scene is meant by a name? A built-in scene with its size, or a file in a folder of scenes.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "setka/scene.hpp"
+
+namespace setka::workload {
+
+/// "spheres:1000000", or the path of a file relative to the folder: "scan/dragon.obj". A build without setka::io reads
+/// the file's snapshot, "scan/dragon.obj.snapshot", instead.
+struct NamedScene {
+    std::string name;
+
+    /// Nothing if the name is no built-in scene and the folder has no such file. Throws what reading it throws.
+    [[nodiscard]] std::optional<Scene> load(const std::filesystem::path& folder) const;
+};
+
+}  // namespace setka::workload
