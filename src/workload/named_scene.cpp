@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <vector>
 
 #include "setka/error.hpp"
 #include "setka/scenes.hpp"
@@ -13,6 +14,22 @@
 #endif
 
 namespace setka::workload {
+
+#ifdef SETKA_HAS_IO
+namespace {
+
+/// The file itself, or the OBJ files of a folder in the order of their names.
+[[nodiscard]] std::vector<std::filesystem::path> files_of(const std::filesystem::path& path) {
+    if (!std::filesystem::is_directory(path)) return {path};
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(path))
+        if (entry.path().extension() == ".obj") files.push_back(entry.path());
+    std::ranges::sort(files);
+    return files;
+}
+
+}  // namespace
+#endif
 
 std::optional<Scene> NamedScene::load(const std::filesystem::path& folder) const {
     const std::size_t colon = name.find(':');
@@ -25,7 +42,7 @@ std::optional<Scene> NamedScene::load(const std::filesystem::path& folder) const
         return make_scene(first, triangles);
     }
 #ifdef SETKA_HAS_IO
-    if (std::filesystem::exists(folder / name)) return io::load_scene(folder / name);
+    if (std::filesystem::exists(folder / name)) return io::load_scene(files_of(folder / name));
 #endif
     const std::filesystem::path snapshot = folder / (name + ".snapshot");
     if (std::filesystem::exists(snapshot)) return read_snapshot(snapshot);

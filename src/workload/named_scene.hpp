@@ -10,8 +10,8 @@
 
 namespace setka::workload {
 
-/// "spheres:1000000", or the path of a file relative to the folder: "scan/dragon.obj". A build without setka::io reads
-/// the file's snapshot, "scan/dragon.obj.snapshot", instead.
+/// "spheres:1000000", or a path in the folder: of a file, "scan/dragon.obj", or of a folder, all of whose OBJ files are one
+/// scene. A build without setka::io reads the snapshot "scan/dragon.obj.snapshot" instead.
 struct NamedScene {
     std::string name;
 

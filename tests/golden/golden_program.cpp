@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+/// What do the golden digests have to be? Computes them on one device and prints the file tests/golden/digests.txt; or writes
+/// snapshots of the scene files for a machine whose build cannot read them.
+#include <cstdio>
+#include <cstring>
+#include <exception>
+
+#include "golden/cases.hpp"
+#include "setka/error.hpp"
+#include "setka/version.hpp"
+#include "workload/named_scene.hpp"
+#include "workload/snapshot.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace setka;
+
+constexpr const char* usage =
+    "usage: setka_golden digests SCENES [DEVICE]   prints the digests that DEVICE computes\n"
+    "       setka_golden snapshots SCENES FOLDER   writes a snapshot of each scene file\n";
+
+[[nodiscard]] Scene load(const std::string& name, const fs::path& scenes) {
+    if (auto scene = workload::NamedScene{name}.load(scenes)) return std::move(*scene);
+    throw Error(ErrorCategory::InvalidData, "there is no " + (scenes / name).string() + " and no snapshot of it");
+}
+
+void print_digests(const fs::path& scenes, const std::string& selector) {
+    const Device device = Device::open(selector);
+    Queue queue = device.make_queue();
+    const DeviceInfo& info = device.info();
+    std::printf("# Made by setka %s on %s: %s (%s), driver %s.\n", version(), to_string(info.backend),
+                info.name.c_str(), info.platform.c_str(), info.driver.c_str());
+    std::printf("# %u x %u rays, picture %u x %u. Remake with scripts/golden.\n", workload::fingerprint_rays_size,
+                workload::fingerprint_rays_size, workload::fingerprint_width, workload::fingerprint_height);
+    std::printf("# scene viewpoint density tables primary shadow diffuse picture\n");
+    for (const workload::GoldenCase& what : golden::cases()) {
+        const Scene scene = load(what.scene, scenes);
+        const GridOptions options{.density = what.density};
+        const auto take = [&](GridStep step) {
+            return workload::take_fingerprint(queue, scene, what.viewpoint, options, step);
+        };
+        const workload::Fingerprint fingerprint = take(GridStep::Dda);
+        if (take(GridStep::BranchFree) != fingerprint)
+            throw Error(ErrorCategory::Internal, "the two steps differ on " + what.to_string());
+        std::printf("%s\n", workload::to_line({what, fingerprint}).c_str());
+        std::fflush(stdout);
+    }
+}
+
+void write_snapshots(const fs::path& scenes, const fs::path& folder) {
+    for (const workload::GoldenCase& what : golden::cases()) {
+        if (what.scene.find('/') == std::string::npos) continue;  // built in
+        const fs::path file = folder / (what.scene + ".snapshot");
+        if (fs::exists(file)) continue;
+        fs::create_directories(file.parent_path());
+        workload::write_snapshot(file, load(what.scene, scenes));
+        std::printf("%s\n", file.c_str());
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        const std::string verb = argc > 1 ? argv[1] : "";
+        if (verb == "digests" && (argc == 3 || argc == 4)) print_digests(argv[2], argc == 4 ? argv[3] : "");
+        else if (verb == "snapshots" && argc == 4) write_snapshots(argv[2], argv[3]);
+        else return std::fputs(usage, stderr), 2;
+        return 0;
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "setka_golden: %s\n", error.what());
+        return 1;
+    }
+}
