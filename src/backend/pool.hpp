@@ -6,10 +6,12 @@
 #include <bit>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <new>
 #include <optional>
 #include <utility>
+#include <vector>
 
 namespace setka::backend {
 
@@ -59,6 +61,30 @@ class Pool {
     mutable std::mutex mutex_;
     std::multimap<std::uint64_t, Handle> free_;
     std::uint64_t cached_bytes_ = 0;
+};
+
+/// The pools of a device's queues, as long as they live.
+template <typename Handle>
+class PoolList {
+  public:
+    [[nodiscard]] std::shared_ptr<Pool<Handle>> make_pool() {
+        auto pool = std::make_shared<Pool<Handle>>();
+        const std::scoped_lock lock(mutex_);
+        std::erase_if(pools_, [](const auto& weak) { return weak.expired(); });
+        pools_.push_back(pool);
+        return pool;
+    }
+
+    /// Gives back everything that is cached in any of them.
+    void clear() {
+        const std::scoped_lock lock(mutex_);
+        for (const auto& weak : pools_)
+            if (const auto pool = weak.lock()) pool->clear();
+    }
+
+  private:
+    std::mutex mutex_;
+    std::vector<std::weak_ptr<Pool<Handle>>> pools_;
 };
 
 }  // namespace setka::backend

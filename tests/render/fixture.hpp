@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What do the renderer's tests stand on? Small scenes made by hand, and a picture of one in a line.
+/// What do the renderer's tests stand on? Small scenes made by hand (support/handmade.hpp), and a picture of
+/// one in a line.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -15,8 +16,12 @@
 #include <vector>
 
 #include "setka/setka.hpp"
+#include "support/compare.hpp"
+#include "support/handmade.hpp"
 
 namespace setka::render_test {
+
+using namespace support;
 
 struct Picture {
     Image image;
@@ -67,114 +72,6 @@ class Render : public ::testing::Test {
     inline static std::optional<Device> device_;
 };
 
-inline constexpr Float3 black{0, 0, 0};
-
-/// Nothing but what is put in: no ambient light, a black background.
-[[nodiscard]] inline Scene dark_scene() {
-    Scene scene;
-    scene.background = {black, black, black, 0};
-    return scene;
-}
-
-[[nodiscard]] inline Material matte(const Float3& diffuse) {
-    Material material;
-    material.diffuse = diffuse;
-    material.specular = black;
-    return material;
-}
-[[nodiscard]] inline Material glowing(const Float3& emission) {
-    Material material = matte(black);
-    material.emission = emission;
-    return material;
-}
-[[nodiscard]] inline Material mirror() {
-    Material material = matte(black);
-    material.specular = {1, 1, 1};
-    material.reflectivity = 1;
-    return material;
-}
-[[nodiscard]] inline Material glass(float refractive_index) {
-    Material material = matte({0.7f, 0.7f, 0.7f});
-    material.transparency = 1;
-    material.refractive_index = refractive_index;
-    return material;
-}
-
-/// Adds a mesh with a material of its own.
-inline Instance& add(Scene& scene, Mesh mesh, const Material& material, const Matrix34& transform = {}) {
-    scene.meshes.push_back(std::move(mesh));
-    scene.materials.push_back(material);
-    Instance instance;
-    instance.mesh = static_cast<std::uint32_t>(scene.meshes.size() - 1);
-    instance.material = static_cast<std::uint32_t>(scene.materials.size() - 1);
-    instance.transform = transform;
-    scene.instances.push_back(instance);
-    return scene.instances.back();
-}
-
-/// A parallelogram around `centre`, with the front where u x v points.
-[[nodiscard]] inline Mesh quad(const Float3& centre, const Float3& u, const Float3& v) {
-    const auto corner = [&](float a, float b) {
-        return Float3{centre.x + a * u.x + b * v.x, centre.y + a * u.y + b * v.y,
-                      centre.z + a * u.z + b * v.z};
-    };
-    Mesh mesh;
-    mesh.positions = {corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1)};
-    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-    return mesh;
-}
-
-/// A closed box with its faces outwards.
-[[nodiscard]] inline Mesh box(const Float3& lower, const Float3& upper) {
-    Mesh mesh;
-    for (int k = 0; k < 8; ++k)
-        mesh.positions.push_back(
-            {k & 1 ? upper.x : lower.x, k & 2 ? upper.y : lower.y, k & 4 ? upper.z : lower.z});
-    mesh.triangles = {{0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}, {0, 1, 5}, {0, 5, 4},
-                      {2, 6, 7}, {2, 7, 3}, {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}};
-    return mesh;
-}
-
-/// A sphere of `rings` rings of twice as many segments, with normals.
-[[nodiscard]] inline Mesh sphere(const Float3& centre, float radius, int rings = 24) {
-    Mesh mesh;
-    const int segments = 2 * rings;
-    for (int ring = 0; ring <= rings; ++ring) {
-        for (int segment = 0; segment < segments; ++segment) {
-            const double polar = 3.14159265358979 * ring / rings,
-                         turn = 2 * 3.14159265358979 * segment / segments;
-            const Float3 n{static_cast<float>(std::sin(polar) * std::cos(turn)),
-                           static_cast<float>(std::cos(polar)),
-                           static_cast<float>(-std::sin(polar) * std::sin(turn))};
-            mesh.normals.push_back(n);
-            mesh.positions.push_back(
-                {centre.x + radius * n.x, centre.y + radius * n.y, centre.z + radius * n.z});
-        }
-    }
-    for (int ring = 0; ring < rings; ++ring) {
-        for (int segment = 0; segment < segments; ++segment) {
-            const auto at = [&](int r, int s) {
-                return static_cast<std::uint32_t>(r * segments + s % segments);
-            };
-            const std::uint32_t a = at(ring, segment), b = at(ring, segment + 1);
-            const std::uint32_t c = at(ring + 1, segment), d = at(ring + 1, segment + 1);
-            if (ring > 0) mesh.triangles.push_back({a, c, b});
-            if (ring + 1 < rings) mesh.triangles.push_back({b, c, d});
-        }
-    }
-    return mesh;
-}
-
-[[nodiscard]] inline Camera look(const Float3& eye, const Float3& target, float fov = 90,
-                                 const Float3& up = {0, 1, 0}) {
-    Camera camera;
-    camera.eye = eye;
-    camera.target = target;
-    camera.up = up;
-    camera.vertical_fov_degrees = fov;
-    return camera;
-}
-
 [[nodiscard]] inline bool near(const Float3& a, const Float3& b, float tolerance) {
     return std::fabs(a.x - b.x) <= tolerance && std::fabs(a.y - b.y) <= tolerance &&
            std::fabs(a.z - b.z) <= tolerance;
@@ -202,20 +99,6 @@ template <typename Call>
         return ::testing::AssertionFailure() << to_string(error.category()) << ": " << error.what();
     }
     return ::testing::AssertionFailure() << "nothing was thrown";
-}
-
-/// Equality to the bit, or the place of the first differing pixel.
-[[nodiscard]] inline ::testing::AssertionResult same_picture(const Image& a, const Image& b) {
-    if (a.width != b.width || a.height != b.height) return ::testing::AssertionFailure() << "sizes differ";
-    for (std::size_t i = 0; i < a.linear.size(); ++i) {
-        const Float3 &p = a.linear[i], &q = b.linear[i];
-        if (std::memcmp(&p, &q, sizeof(Float3)) != 0)
-            return ::testing::AssertionFailure()
-                   << "pixel (" << i % a.width << ", " << i / a.width << "): (" << p.x << ", " << p.y << ", "
-                   << p.z << ") and (" << q.x << ", " << q.y << ", " << q.z << ")";
-    }
-    return a.srgb == b.srgb ? ::testing::AssertionSuccess()
-                            : ::testing::AssertionFailure() << "sRGB codes differ";
 }
 
 }  // namespace setka::render_test

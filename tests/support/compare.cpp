@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// How are tables and hits compared and printed?
+/// How are tables, hits and images compared and printed?
 #include "support/compare.hpp"
 
 #include <algorithm>
@@ -86,6 +86,46 @@ std::string ray_name(std::size_t index) {
 }
 
 }  // namespace
+
+namespace {
+
+bool same_pixel(const setka::Image& a, const setka::Image& b, std::size_t pixel) {
+    return std::memcmp(&a.linear[pixel], &b.linear[pixel], sizeof(setka::Float3)) == 0 &&
+           std::equal(&a.srgb[3 * pixel], &a.srgb[3 * pixel] + 3, &b.srgb[3 * pixel]);
+}
+
+std::string describe_pixel(const setka::Image& image, std::size_t pixel) {
+    const setka::Float3& c = image.linear[pixel];
+    std::ostringstream out;
+    out << std::setprecision(9) << "linear " << c.x << ' ' << c.y << ' ' << c.z << " (" << std::hexfloat
+        << c.x << ' ' << c.y << ' ' << c.z << "), sRGB";
+    for (std::size_t k = 0; k < 3; ++k) out << ' ' << static_cast<unsigned>(image.srgb[3 * pixel + k]);
+    return out.str();
+}
+
+}  // namespace
+
+AssertionResult same_image(const setka::Image& expected, const setka::Image& actual) {
+    const std::size_t pixels = std::size_t(expected.width) * expected.height;
+    for (const setka::Image* image : {&expected, &actual})
+        if (image->width != expected.width || image->height != expected.height ||
+            image->linear.size() != pixels || image->srgb.size() != 3 * pixels)
+            return AssertionFailure()
+                   << "sizes differ: expected " << expected.width << " x " << expected.height << ", actual "
+                   << actual.width << " x " << actual.height << ", with " << image->linear.size()
+                   << " linear pixels and " << image->srgb.size() << " 8-bit channels";
+    std::size_t count = 0, first = 0;
+    for (std::size_t pixel = pixels; pixel-- > 0;)
+        if (!same_pixel(expected, actual, pixel)) {
+            ++count;
+            first = pixel;
+        }
+    if (count == 0) return AssertionSuccess();
+    return AssertionFailure() << count << " of " << pixels << " pixels differ; first: pixel ("
+                              << first % expected.width << ", " << first / expected.width << ")\n  expected "
+                              << describe_pixel(expected, first) << "\n  actual   "
+                              << describe_pixel(actual, first);
+}
 
 oracle::Tables download(setka::Queue& queue, const setka::Grid& grid) {
     oracle::Tables tables;

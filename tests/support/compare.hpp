@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Where do two answers first differ? Comparisons of tables, pairs and hits, bit for bit, that print the
-/// first difference.
+/// Where do two answers first differ? Comparisons of tables, pairs, hits and images, bit for bit, that print
+/// the first difference.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -10,6 +10,7 @@
 
 #include "oracle/oracle.hpp"
 #include "setka/grid.hpp"
+#include "setka/image.hpp"
 #include "setka/tracer.hpp"
 
 namespace support {
@@ -37,5 +38,8 @@ namespace support {
 [[nodiscard]] ::testing::AssertionResult same_occlusion(std::span<const oracle::Ray> rays,
                                                         std::span<const oracle::Hit> hits,
                                                         std::span<const std::uint32_t> occluded);
+
+/// Linear and 8-bit pixels bit for bit; else the number of differing pixels and the first.
+[[nodiscard]] ::testing::AssertionResult same_image(const setka::Image& expected, const setka::Image& actual);
 
 }  // namespace support

@@ -3,12 +3,11 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
-#include <vector>
 
 #include "backend/cuda/cuda_check.hpp"
 #include "backend/device.hpp"
 #include "backend/pool.hpp"
+#include "backend/resolve_options.hpp"
 
 namespace setka::backend {
 
@@ -27,18 +26,17 @@ class CudaDevice final : public Device {
     [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
     [[nodiscard]] const DeviceOptions& options() const noexcept override { return options_; }
     [[nodiscard]] std::shared_ptr<Queue> make_queue() override;
-    void trim() override;
+    void trim() override { pools_.clear(); }
 
     [[nodiscard]] int number() const noexcept { return number_; }
 
   private:
-    void resolve_options(const DeviceOptions& options);
+    [[nodiscard]] DeviceCapabilities capabilities() const;
 
     int number_;
     DeviceInfo info_;
     DeviceOptions options_;
-    std::mutex pools_mutex_;
-    std::vector<std::weak_ptr<CudaPool>> pools_;
+    PoolList<CudaBuffer> pools_;
 };
 
 }  // namespace setka::backend

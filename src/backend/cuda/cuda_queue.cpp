@@ -6,31 +6,17 @@
 #include <cstring>
 
 #include "backend/cuda/kernel_table.hpp"
+#include "backend/pooled_memory.hpp"
 #include "core/settings.hpp"
 
 namespace setka::backend {
 
 namespace {
 
-/// Intervals are summed up once there are this many, so that a long run does not collect events without end.
-constexpr std::size_t max_pending_intervals = 1024;
 /// Pinned memory for transfers, one of two halves: large enough for full speed, small enough to have always.
 constexpr std::size_t staging_bytes = std::size_t(8) << 20;
 
-class CudaMemory final : public Memory {
-  public:
-    CudaMemory(std::uint64_t size, std::string name) : Memory(size, std::move(name)) {}
-    ~CudaMemory() override {
-        if (!device) return;
-        device->release(size_bytes());
-        pool->give(pooled_bytes, std::move(buffer));
-    }
-
-    CudaBuffer buffer;
-    std::uint64_t pooled_bytes = 0;
-    std::shared_ptr<CudaDevice> device;
-    std::shared_ptr<CudaPool> pool;
-};
+using CudaMemory = PooledMemory<CudaBuffer>;
 
 void* pointer_of(Memory& memory) { return static_cast<CudaMemory&>(memory).buffer.get(); }
 
@@ -43,69 +29,43 @@ T* pointer_as(Memory& memory) {
 
 CudaQueue::CudaQueue(std::shared_ptr<CudaDevice> device, std::shared_ptr<CudaPool> pool)
     : device_(std::move(device)), pool_(std::move(pool)) {
-    stages_.push_back({"other", 0, 0});
     select();
-    try {
-        check(cudaStreamCreateWithFlags(&stream_, cudaStreamNonBlocking), "making a stream on " + device_->info().id);
-        check(cudaHostAlloc(reinterpret_cast<void**>(&staging_), 2 * staging_bytes, cudaHostAllocDefault),
-              "allocating pinned memory for transfers");
-        for (cudaEvent_t& event : staged_)
-            check(cudaEventCreateWithFlags(&event, cudaEventDisableTiming), "making an event");
-    } catch (...) {
-        destroy();
-        throw;
+    cudaStream_t stream = nullptr;
+    check(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "making a stream on " + device_->info().id);
+    stream_.reset(stream);
+    void* staging = nullptr;
+    check(cudaHostAlloc(&staging, 2 * staging_bytes, cudaHostAllocDefault),
+          "allocating " + std::to_string(2 * staging_bytes) + " bytes of pinned host memory for transfers");
+    staging_.reset(static_cast<std::byte*>(staging));
+    for (CudaEvent& staged : staged_) {
+        cudaEvent_t event = nullptr;
+        check(cudaEventCreateWithFlags(&event, cudaEventDisableTiming), "making an event");
+        staged.reset(event);
     }
 }
 
-CudaQueue::~CudaQueue() { destroy(); }
-
-void CudaQueue::destroy() noexcept {
+CudaQueue::~CudaQueue() {
     check_noexcept(cudaSetDevice(device_->number()), "cudaSetDevice");
-    if (stream_) check_noexcept(cudaStreamSynchronize(stream_), "cudaStreamSynchronize");
-    for (const Interval& interval : intervals_)
-        for (cudaEvent_t event : {interval.start, interval.end})
-            check_noexcept(cudaEventDestroy(event), "cudaEventDestroy");
-    for (cudaEvent_t event : spare_events_) check_noexcept(cudaEventDestroy(event), "cudaEventDestroy");
-    for (cudaEvent_t event : staged_)
-        if (event) check_noexcept(cudaEventDestroy(event), "cudaEventDestroy");
-    if (staging_) check_noexcept(cudaFreeHost(staging_), "cudaFreeHost");
-    if (stream_) check_noexcept(cudaStreamDestroy(stream_), "cudaStreamDestroy");
+    check_noexcept(cudaStreamSynchronize(stream_.get()), "cudaStreamSynchronize");
 }
 
 void CudaQueue::select() const { check(cudaSetDevice(device_->number()), "selecting " + device_->info().id); }
 
 std::shared_ptr<Memory> CudaQueue::allocate(std::uint64_t size_bytes, std::string_view name) {
-    const std::uint64_t pooled_bytes = CudaPool::pooled_size(size_bytes);
-    device_->reserve(size_bytes, name);
-    std::shared_ptr<CudaMemory> memory;
-    try {
-        memory = std::make_shared<CudaMemory>(size_bytes, std::string(name));
-        if (auto pooled = pool_->take(pooled_bytes)) {
-            memory->buffer = std::move(*pooled);
-        } else {
-            select();
-            if (device_->in_use_bytes() + pool_->cached_bytes() > device_->options().memory_budget_bytes) pool_->clear();
-            void* pointer = nullptr;
-            cudaError_t code = cudaMalloc(&pointer, pooled_bytes);
-            if (code == cudaErrorMemoryAllocation) {
-                // Others may hold the card's memory; what is cached here helps first.
-                (void)cudaGetLastError();
-                pool_->clear();
-                code = cudaMalloc(&pointer, pooled_bytes);
-            }
-            check(code, "allocating '" + std::string(name) + "' (" + std::to_string(size_bytes) + " bytes)");
-            memory->buffer.reset(pointer);
+    const std::string what = "allocating '" + std::string(name) + "' (" + std::to_string(size_bytes) + " bytes)";
+    return allocate_pooled<CudaMemory>(device_, pool_, size_bytes, name, [&](std::uint64_t pooled_bytes) {
+        select();
+        void* pointer = nullptr;
+        cudaError_t code = cudaMalloc(&pointer, pooled_bytes);
+        if (code == cudaErrorMemoryAllocation) {
+            // Others may hold the card's memory; what is cached here helps first.
+            (void)cudaGetLastError();
+            pool_->clear();
+            code = cudaMalloc(&pointer, pooled_bytes);
         }
-    } catch (...) {
-        device_->release(size_bytes);
-        throw;
-    }
-    memory->pooled_bytes = pooled_bytes;
-    memory->pool = pool_;
-    memory->device = device_;  // from here on the destructor releases
-    if (settings().log_memory)
-        log_line("allocated '" + std::string(name) + "', " + std::to_string(size_bytes) + " bytes");
-    return memory;
+        check(code, what);
+        return CudaBuffer(pointer);
+    });
 }
 
 std::shared_ptr<Memory> CudaQueue::wrap_host(void*, std::uint64_t, bool, std::string_view) { return nullptr; }
@@ -123,9 +83,10 @@ void CudaQueue::launch(Kernel kernel, std::uint32_t group_count, std::uint32_t g
             pointers[i] = &buffers[i];
         }
     }
-    begin_interval();
-    check(cudaLaunchKernel(cuda_kernel(kernel), dim3(group_count), dim3(group_size), pointers.data(), 0, stream_), what);
-    end_interval(what);
+    timed(what, [&] {
+        return cudaLaunchKernel(cuda_kernel(kernel), dim3(group_count), dim3(group_size), pointers.data(), 0,
+                                stream_.get());
+    });
     if (settings().log_launch) log_line(what + ", " + std::to_string(group_count) + " x " + std::to_string(group_size));
 }
 
@@ -135,12 +96,12 @@ void CudaQueue::write(Memory& target, const void* source, std::uint64_t size_byt
     auto* to = pointer_as<std::byte>(target);
     for (std::size_t done = 0, half = 0; done < size_bytes; half ^= 1) {
         const std::size_t part = std::min<std::size_t>(staging_bytes, size_bytes - done);
-        std::byte* staging = staging_ + half * staging_bytes;
-        check(cudaEventSynchronize(staged_[half]), "writing '" + target.name() + "'");
+        std::byte* staging = staging_.get() + half * staging_bytes;
+        check(cudaEventSynchronize(staged_[half].get()), "writing '" + target.name() + "'");
         std::memcpy(staging, from + done, part);
-        check(cudaMemcpyAsync(to + done, staging, part, cudaMemcpyHostToDevice, stream_),
+        check(cudaMemcpyAsync(to + done, staging, part, cudaMemcpyHostToDevice, stream_.get()),
               "writing '" + target.name() + "'");
-        check(cudaEventRecord(staged_[half], stream_), "writing '" + target.name() + "'");
+        check(cudaEventRecord(staged_[half].get(), stream_.get()), "writing '" + target.name() + "'");
         done += part;
     }
 }
@@ -152,24 +113,25 @@ void CudaQueue::read(Memory& source, void* target, std::uint64_t size_bytes) {
     const std::string what = "reading '" + source.name() + "'";
     const auto part_at = [&](std::size_t at) { return std::min<std::size_t>(staging_bytes, size_bytes - at); };
     const auto fetch = [&](std::size_t at, std::size_t half) {
-        check(cudaMemcpyAsync(staging_ + half * staging_bytes, from + at, part_at(at), cudaMemcpyDeviceToHost, stream_),
+        check(cudaMemcpyAsync(staging_.get() + half * staging_bytes, from + at, part_at(at), cudaMemcpyDeviceToHost,
+                              stream_.get()),
               what);
-        check(cudaEventRecord(staged_[half], stream_), what);
+        check(cudaEventRecord(staged_[half].get(), stream_.get()), what);
     };
     // While one half is copied out by the host, the device fills the other.
     if (size_bytes > 0) fetch(0, 0);
     for (std::size_t done = 0, half = 0; done < size_bytes; half ^= 1) {
         const std::size_t part = part_at(done);
         if (done + part < size_bytes) fetch(done + part, half ^ 1);
-        check(cudaEventSynchronize(staged_[half]), what);
-        std::memcpy(to + done, staging_ + half * staging_bytes, part);
+        check(cudaEventSynchronize(staged_[half].get()), what);
+        std::memcpy(to + done, staging_.get() + half * staging_bytes, part);
         done += part;
     }
 }
 
 void CudaQueue::copy(Memory& source, Memory& target, std::uint64_t size_bytes) {
     select();
-    check(cudaMemcpyAsync(pointer_of(target), pointer_of(source), size_bytes, cudaMemcpyDeviceToDevice, stream_),
+    check(cudaMemcpyAsync(pointer_of(target), pointer_of(source), size_bytes, cudaMemcpyDeviceToDevice, stream_.get()),
           "copying '" + source.name() + "' to '" + target.name() + "'");
 }
 
@@ -178,7 +140,7 @@ void CudaQueue::fill(Memory& target, std::uint32_t pattern, std::uint64_t size_b
     const std::string what = "filling '" + target.name() + "'";
     // cudaMemset repeats a byte; words go through pinned memory unless all their bytes are equal.
     if (pattern == (pattern & 0xffu) * 0x01010101u) {
-        check(cudaMemsetAsync(pointer_of(target), static_cast<int>(pattern & 0xffu), size_bytes, stream_), what);
+        check(cudaMemsetAsync(pointer_of(target), static_cast<int>(pattern & 0xffu), size_bytes, stream_.get()), what);
         return;
     }
     const std::vector<std::uint32_t> words(size_bytes / sizeof(pattern), pattern);
@@ -187,60 +149,46 @@ void CudaQueue::fill(Memory& target, std::uint32_t pattern, std::uint64_t size_b
 
 void CudaQueue::finish() {
     select();
-    check(cudaStreamSynchronize(stream_), "waiting for " + device_->info().id);
-}
-
-void CudaQueue::begin_stage(std::string_view stage) {
-    const auto it = std::ranges::find(stages_, stage, &StageTime::stage);
-    stage_ = static_cast<std::size_t>(it - stages_.begin());
-    if (it == stages_.end()) stages_.push_back({std::string(stage), 0, 0});
-}
-
-cudaEvent_t CudaQueue::take_event() {
-    cudaEvent_t event = nullptr;
-    if (spare_events_.empty()) {
-        check(cudaEventCreate(&event), "making an event");
-    } else {
-        event = spare_events_.back();
-        spare_events_.pop_back();
-    }
-    return event;
-}
-
-void CudaQueue::begin_interval() {
-    select();
-    if (intervals_.size() >= max_pending_intervals) collect_events();
-    intervals_.push_back({stage_, take_event(), take_event()});
-    check(cudaEventRecord(intervals_.back().start, stream_), "recording an event");
-}
-
-void CudaQueue::end_interval(const std::string& what) {
-    check(cudaEventRecord(intervals_.back().end, stream_), "recording an event");
-    if (settings().synchronous) check(cudaStreamSynchronize(stream_), what);
-}
-
-void CudaQueue::collect_events() {
-    finish();
-    for (const Interval& interval : intervals_) {
-        float time_ms = 0;
-        check(cudaEventElapsedTime(&time_ms, interval.start, interval.end), "reading an event");
-        stages_[interval.stage].time_ms += time_ms;
-        ++stages_[interval.stage].launches;
-        spare_events_.push_back(interval.start);
-        spare_events_.push_back(interval.end);
-    }
-    intervals_.clear();
+    check(cudaStreamSynchronize(stream_.get()), "waiting for " + device_->info().id);
 }
 
 std::vector<StageTime> CudaQueue::take_timings() {
     collect_events();
-    std::vector<StageTime> result;
-    for (StageTime& stage : stages_) {
-        if (stage.launches > 0) result.push_back(stage);
-        stage.time_ms = 0;
-        stage.launches = 0;
+    return clock_.take_timings();
+}
+
+void CudaQueue::collect_events() {
+    finish();
+    clock_.collect([&](Span& span) {
+        float time_ms = 0;
+        check(cudaEventElapsedTime(&time_ms, span.start.get(), span.end.get()), "reading an event");
+        spare_events_.push_back(std::move(span.start));
+        spare_events_.push_back(std::move(span.end));
+        return static_cast<double>(time_ms);
+    });
+}
+
+CudaEvent CudaQueue::take_event() {
+    if (!spare_events_.empty()) {
+        CudaEvent event = std::move(spare_events_.back());
+        spare_events_.pop_back();
+        return event;
     }
-    return result;
+    cudaEvent_t event = nullptr;
+    check(cudaEventCreate(&event), "making an event");
+    return CudaEvent(event);
+}
+
+template <typename Enqueue>
+void CudaQueue::timed(const std::string& what, Enqueue enqueue) {
+    select();
+    Span span{take_event(), take_event()};
+    check(cudaEventRecord(span.start.get(), stream_.get()), "recording an event");
+    check(enqueue(), what);
+    check(cudaEventRecord(span.end.get(), stream_.get()), "recording an event");
+    clock_.add(std::move(span));
+    if (settings().synchronous) check(cudaStreamSynchronize(stream_.get()), what);
+    if (clock_.is_full()) collect_events();
 }
 
 std::uint64_t CudaQueue::library_scan_bytes(std::uint32_t n) {
@@ -251,11 +199,10 @@ std::uint64_t CudaQueue::library_scan_bytes(std::uint32_t n) {
 }
 
 void CudaQueue::library_scan(Memory& counts, Memory& offsets, Memory& total, Memory& scratch, std::uint32_t n) {
-    begin_interval();
-    check(cub_scan(pointer_of(scratch), scratch.size_bytes(), pointer_as<std::uint32_t>(counts),
-                   pointer_as<std::uint32_t>(offsets), pointer_as<std::uint64_t>(total), n, stream_),
-          "scanning with CUB");
-    end_interval("scanning with CUB");
+    timed("scanning with CUB", [&] {
+        return cub_scan(pointer_of(scratch), scratch.size_bytes(), pointer_as<std::uint32_t>(counts),
+                        pointer_as<std::uint32_t>(offsets), pointer_as<std::uint64_t>(total), n, stream_.get());
+    });
 }
 
 std::uint64_t CudaQueue::library_sort_bytes(std::uint32_t n, std::uint32_t key_bits) {
@@ -270,11 +217,10 @@ int CudaQueue::library_sort(const SortBuffers& buffers, std::uint32_t n, std::ui
     std::uint32_t* const values[2] = {pointer_as<std::uint32_t>(buffers.values),
                                       pointer_as<std::uint32_t>(buffers.other_values)};
     int selector = 0;
-    begin_interval();
-    check(cub_sort(pointer_of(buffers.scratch), buffers.scratch.size_bytes(), keys, values, n, key_bits, stream_,
-                   &selector),
-          "sorting with CUB");
-    end_interval("sorting with CUB");
+    timed("sorting with CUB", [&] {
+        return cub_sort(pointer_of(buffers.scratch), buffers.scratch.size_bytes(), keys, values, n, key_bits,
+                        stream_.get(), &selector);
+    });
     return selector;
 }
 

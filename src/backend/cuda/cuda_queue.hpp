@@ -7,8 +7,19 @@
 #include <vector>
 
 #include "backend/cuda/cuda_device.hpp"
+#include "backend/stage_clock.hpp"
 
 namespace setka::backend {
+
+/// Owners of a stream, an event and pinned host memory.
+struct CudaDestroy {
+    void operator()(cudaStream_t stream) const noexcept { check_noexcept(cudaStreamDestroy(stream), "cudaStreamDestroy"); }
+    void operator()(cudaEvent_t event) const noexcept { check_noexcept(cudaEventDestroy(event), "cudaEventDestroy"); }
+    void operator()(std::byte* pinned) const noexcept { check_noexcept(cudaFreeHost(pinned), "cudaFreeHost"); }
+};
+using CudaStream = std::unique_ptr<CUstream_st, CudaDestroy>;
+using CudaEvent = std::unique_ptr<CUevent_st, CudaDestroy>;
+using CudaPinned = std::unique_ptr<std::byte, CudaDestroy>;
 
 class CudaQueue final : public Queue {
   public:
@@ -25,7 +36,7 @@ class CudaQueue final : public Queue {
     void copy(Memory& source, Memory& target, std::uint64_t size_bytes) override;
     void fill(Memory& target, std::uint32_t pattern, std::uint64_t size_bytes) override;
     void finish() override;
-    void begin_stage(std::string_view stage) override;
+    void begin_stage(std::string_view stage) override { clock_.begin_stage(stage); }
     [[nodiscard]] std::vector<StageTime> take_timings() override;
     [[nodiscard]] std::uint64_t library_scan_bytes(std::uint32_t n) override;
     void library_scan(Memory& counts, Memory& offsets, Memory& total, Memory& scratch, std::uint32_t n) override;
@@ -33,27 +44,25 @@ class CudaQueue final : public Queue {
     [[nodiscard]] int library_sort(const SortBuffers& buffers, std::uint32_t n, std::uint32_t key_bits) override;
 
   private:
-    struct Interval {
-        std::size_t stage;
-        cudaEvent_t start, end;
+    /// What lies between two events of the stream.
+    struct Span {
+        CudaEvent start, end;
     };
 
-    void destroy() noexcept;
     void select() const;
-    [[nodiscard]] cudaEvent_t take_event();
-    void begin_interval();
-    void end_interval(const std::string& what);
+    [[nodiscard]] CudaEvent take_event();
+    /// Calls enqueue(), which returns a code, between two events that time it.
+    template <typename Enqueue>
+    void timed(const std::string& what, Enqueue enqueue);
     void collect_events();
 
     std::shared_ptr<CudaDevice> device_;
     std::shared_ptr<CudaPool> pool_;
-    cudaStream_t stream_ = nullptr;
-    std::byte* staging_ = nullptr;  ///< pinned, two halves
-    cudaEvent_t staged_[2] = {};    ///< when the half was last read or written by the device
-    std::vector<StageTime> stages_;
-    std::size_t stage_ = 0;
-    std::vector<Interval> intervals_;
-    std::vector<cudaEvent_t> spare_events_;
+    CudaStream stream_;
+    CudaPinned staging_;   ///< pinned, two halves
+    CudaEvent staged_[2];  ///< when the half was last read or written by the device
+    StageClock<Span> clock_;
+    std::vector<CudaEvent> spare_events_;
 };
 
 }  // namespace setka::backend

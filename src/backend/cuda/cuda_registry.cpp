@@ -35,18 +35,32 @@ DeviceInfo describe(int number, const cudaDeviceProp& properties, int driver, in
 
 }  // namespace
 
+std::string cuda_platform_note(cudaError_t code, int driver, int runtime) {
+    if (driver == 0 && code == cudaSuccess)
+        return "CUDA: no NVIDIA driver was found; for an NVIDIA GPU install one for CUDA " + version_text(runtime) +
+               " or later";
+    const std::string versions = " (driver for CUDA " + (driver == 0 ? "unknown" : version_text(driver)) +
+                                 ", built with CUDA " + version_text(runtime) + ")";
+    const std::string advice = cuda_advice(code);
+    return "CUDA: " + cuda_code_name(code) + versions + (advice.empty() ? "" : "; ") + advice;
+}
+
+std::string cuda_device_note(cudaError_t code, int number, const cudaDeviceProp& properties) {
+    const std::string advice = cuda_advice(code);
+    return "CUDA device " + std::to_string(number) + " (" + properties.name + ", compute capability " +
+           std::to_string(properties.major) + "." + std::to_string(properties.minor) + ") cannot be used: " +
+           cuda_code_name(code) + (advice.empty() ? "" : "; ") + advice;
+}
+
 void add_cuda_devices(Registry& registry) {
     int driver = 0, runtime = 0, count = 0;
-    // 0 without a driver; no error then.
-    if (cudaDriverGetVersion(&driver) != cudaSuccess || driver == 0) {
-        registry.notes.push_back("CUDA: no NVIDIA driver was found");
-        return;
-    }
+    cudaError_t found = cudaDriverGetVersion(&driver);
     (void)cudaRuntimeGetVersion(&runtime);
-    if (const cudaError_t code = cudaGetDeviceCount(&count); code != cudaSuccess) {
+    // The version is 0 without a driver; that is no error.
+    if (found == cudaSuccess && driver != 0) found = cudaGetDeviceCount(&count);
+    if (found != cudaSuccess || driver == 0) {
         (void)cudaGetLastError();
-        registry.notes.push_back(std::string("CUDA: ") + cudaGetErrorString(code) + " (driver for CUDA " +
-                                 version_text(driver) + ", built with CUDA " + version_text(runtime) + ")");
+        registry.notes.push_back(cuda_platform_note(found, driver, runtime));
         return;
     }
     for (int number = 0; number < count; ++number) {
@@ -58,9 +72,7 @@ void add_cuda_devices(Registry& registry) {
         if (code == cudaSuccess) code = cudaFuncGetAttributes(&attributes, cuda_kernel(Kernel::grid_emit));
         if (code != cudaSuccess) {
             (void)cudaGetLastError();
-            registry.notes.push_back("CUDA device " + std::to_string(number) + " (" + properties.name +
-                                     ", compute capability " + std::to_string(properties.major) + "." +
-                                     std::to_string(properties.minor) + ") cannot be used: " + cudaGetErrorString(code));
+            registry.notes.push_back(cuda_device_note(code, number, properties));
             continue;
         }
         const DeviceInfo info = describe(number, properties, driver, runtime);

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <bit>
 #include <chrono>
 
 #include "backend/opencl/opencl_queue.hpp"
@@ -68,7 +67,7 @@ OpenClDevice::OpenClDevice(cl::Device device, DeviceInfo info, const DeviceOptio
     : device_(std::move(device)), info_(std::move(info)) {
     guarded("opening " + info_.id, [&] { context_ = cl::Context(device_); });
     build_program();
-    resolve_options(options);
+    options_ = resolve_options(options, info_, capabilities());
 }
 
 void OpenClDevice::build_program() {
@@ -97,52 +96,34 @@ void OpenClDevice::build_program() {
     }
 }
 
-void OpenClDevice::resolve_options(const DeviceOptions& options) {
-    options_ = options;
+DeviceCapabilities OpenClDevice::capabilities() const {
+    DeviceCapabilities capabilities;
     // Drivers may allow a kernel less than the device's maximum.
-    std::uint32_t largest = std::min<std::uint32_t>(256, info_.max_work_group_size);
+    capabilities.kernel_work_group_size = info_.max_work_group_size;
     guarded("asking for the kernels' limits", [&] {
-        for (const char* name : kernel_names)
-            largest = std::min<std::uint32_t>(
-                largest, static_cast<std::uint32_t>(
-                             cl::Kernel(program_, name).getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device_)));
+        for (const char* name : kernel_names) {
+            const cl::size_type limit =
+                cl::Kernel(program_, name).getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device_);
+            capabilities.kernel_work_group_size = static_cast<std::uint32_t>(
+                std::min<cl::size_type>(capabilities.kernel_work_group_size, limit));
+        }
     });
-    largest = std::bit_floor(std::max(largest, 1u));
-    if (options.work_group_size != 0 &&
-        (!std::has_single_bit(options.work_group_size) || options.work_group_size > largest))
-        throw Error(ErrorCategory::InvalidArgument,
-                    "work_group_size is " + std::to_string(options.work_group_size) + "; " + info_.name +
-                        " accepts powers of two up to " + std::to_string(largest));
     const bool is_cpu = info_.type == DeviceType::Cpu;
-    if (options_.work_group_size == 0) options_.work_group_size = std::min(largest, is_cpu ? 64u : 128u);
-    if (options.primitives == PrimitiveShape::Library)
-        throw Error(ErrorCategory::Unsupported,
-                    "primitives is Library; OpenCL devices have none: use Portable, Serial or Group");
-    if (options_.primitives == PrimitiveShape::Auto || options_.primitives == PrimitiveShape::Portable)
-        options_.primitives = is_cpu ? PrimitiveShape::Serial : PrimitiveShape::Group;
-    if (options_.memory_budget_bytes == 0) {
-        std::uint64_t memory = info_.memory_bytes;
-        // A CPU driver's figure may be a fraction of the machine's memory, taken at load time.
-        if (is_cpu)
-            memory = std::max(memory, std::uint64_t(sysconf(_SC_PHYS_PAGES)) * std::uint64_t(sysconf(_SC_PAGESIZE)));
-        options_.memory_budget_bytes = memory / 4 * 3;
-    }
+    capabilities.default_work_group_size = is_cpu ? 64 : 128;
+    capabilities.portable_primitives = is_cpu ? PrimitiveShape::Serial : PrimitiveShape::Group;
+    capabilities.default_primitives = capabilities.portable_primitives;
+    capabilities.memory_bytes = info_.memory_bytes;
+    // A CPU driver's figure may be a fraction of the machine's memory, taken at load time.
+    if (is_cpu)
+        capabilities.memory_bytes =
+            std::max(capabilities.memory_bytes,
+                     std::uint64_t(sysconf(_SC_PHYS_PAGES)) * std::uint64_t(sysconf(_SC_PAGESIZE)));
+    return capabilities;
 }
 
 std::shared_ptr<Queue> OpenClDevice::make_queue() {
-    auto pool = std::make_shared<OpenClPool>();
-    auto queue =
-        std::make_shared<OpenClQueue>(std::static_pointer_cast<OpenClDevice>(shared_from_this()), pool);
-    const std::scoped_lock lock(pools_mutex_);
-    std::erase_if(pools_, [](const auto& weak) { return weak.expired(); });
-    pools_.push_back(pool);
-    return queue;
-}
-
-void OpenClDevice::trim() {
-    const std::scoped_lock lock(pools_mutex_);
-    for (const auto& weak : pools_)
-        if (const auto pool = weak.lock()) pool->clear();
+    return std::make_shared<OpenClQueue>(std::static_pointer_cast<OpenClDevice>(shared_from_this()),
+                                         pools_.make_pool());
 }
 
 }  // namespace setka::backend

@@ -3,12 +3,11 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
-#include <vector>
 
 #include "backend/device.hpp"
 #include "backend/opencl/opencl.hpp"
 #include "backend/pool.hpp"
+#include "backend/resolve_options.hpp"
 
 namespace setka::backend {
 
@@ -22,7 +21,7 @@ class OpenClDevice final : public Device {
     [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
     [[nodiscard]] const DeviceOptions& options() const noexcept override { return options_; }
     [[nodiscard]] std::shared_ptr<Queue> make_queue() override;
-    void trim() override;
+    void trim() override { pools_.clear(); }
 
     [[nodiscard]] const cl::Device& device() const noexcept { return device_; }
     [[nodiscard]] const cl::Context& context() const noexcept { return context_; }
@@ -30,15 +29,14 @@ class OpenClDevice final : public Device {
 
   private:
     void build_program();
-    void resolve_options(const DeviceOptions& options);
+    [[nodiscard]] DeviceCapabilities capabilities() const;
 
     cl::Device device_;
     DeviceInfo info_;
     DeviceOptions options_;
     cl::Context context_;
     cl::Program program_;
-    std::mutex pools_mutex_;
-    std::vector<std::weak_ptr<OpenClPool>> pools_;
+    PoolList<cl::Buffer> pools_;
 };
 
 }  // namespace setka::backend

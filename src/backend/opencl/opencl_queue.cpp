@@ -1,32 +1,17 @@
 // SPDX-License-Identifier: MIT
 #include "backend/opencl/opencl_queue.hpp"
 
-#include <algorithm>
-
+#include "backend/pooled_memory.hpp"
 #include "core/settings.hpp"
 
 namespace setka::backend {
 
 namespace {
 
-/// Events are summed up once there are this many, so that a long run does not collect them without end.
-constexpr std::size_t max_pending_events = 1024;
-
-class OpenClMemory final : public Memory {
+class OpenClMemory final : public PooledMemory<cl::Buffer> {
   public:
-    OpenClMemory(std::uint64_t size, std::string name, cl::Buffer handle, void* wrapped)
-        : Memory(size, std::move(name)), buffer(std::move(handle)), host(wrapped) {}
-    ~OpenClMemory() override {
-        if (!device) return;
-        device->release(size_bytes());
-        pool->give(pooled_bytes, std::move(buffer));
-    }
-
-    cl::Buffer buffer;
+    using PooledMemory::PooledMemory;
     void* host = nullptr;  ///< the memory that the buffer wraps, if it does
-    std::uint64_t pooled_bytes = 0;
-    std::shared_ptr<OpenClDevice> device;  ///< null for a wrapped buffer
-    std::shared_ptr<OpenClPool> pool;
 };
 
 OpenClMemory& as_opencl(Memory& memory) { return static_cast<OpenClMemory&>(memory); }
@@ -39,38 +24,13 @@ OpenClQueue::OpenClQueue(std::shared_ptr<OpenClDevice> device, std::shared_ptr<O
         queue_ = cl::CommandQueue(device_->context(), device_->device(), CL_QUEUE_PROFILING_ENABLE);
         for (const char* name : kernel_names) kernels_.emplace_back(device_->program(), name);
     });
-    stages_.push_back({"other", 0, 0});
 }
 
 std::shared_ptr<Memory> OpenClQueue::allocate(std::uint64_t size_bytes, std::string_view name) {
-    const std::uint64_t pooled_bytes = OpenClPool::pooled_size(size_bytes);
-    if (pooled_bytes > device_->info().max_allocation_bytes)
-        throw Error(ErrorCategory::OutOfMemory,
-                    "buffer '" + std::string(name) + "' needs " + std::to_string(size_bytes) + " bytes; " +
-                        device_->info().name + " allows " + std::to_string(device_->info().max_allocation_bytes) +
-                        " in one allocation");
-    device_->reserve(size_bytes, name);
-    auto memory = std::make_shared<OpenClMemory>(size_bytes, std::string(name), cl::Buffer(), nullptr);
-    try {
-        if (auto pooled = pool_->take(pooled_bytes)) {
-            memory->buffer = std::move(*pooled);
-        } else {
-            // Unused buffers of other sizes must not push the total over the budget.
-            if (device_->in_use_bytes() + pool_->cached_bytes() > device_->options().memory_budget_bytes) pool_->clear();
-            guarded("allocating '" + std::string(name) + "' (" + std::to_string(size_bytes) + " bytes)", [&] {
-                memory->buffer = cl::Buffer(device_->context(), CL_MEM_READ_WRITE, pooled_bytes);
-            });
-        }
-    } catch (...) {
-        device_->release(size_bytes);
-        throw;
-    }
-    memory->pooled_bytes = pooled_bytes;
-    memory->pool = pool_;
-    memory->device = device_;  // from here on the destructor releases
-    if (settings().log_memory)
-        log_line("allocated '" + std::string(name) + "', " + std::to_string(size_bytes) + " bytes");
-    return memory;
+    const std::string what = "allocating '" + std::string(name) + "' (" + std::to_string(size_bytes) + " bytes)";
+    return allocate_pooled<OpenClMemory>(device_, pool_, size_bytes, name, [&](std::uint64_t pooled_bytes) {
+        return guarded(what, [&] { return cl::Buffer(device_->context(), CL_MEM_READ_WRITE, pooled_bytes); });
+    });
 }
 
 std::shared_ptr<Memory> OpenClQueue::wrap_host(void* data, std::uint64_t size_bytes, bool read_only,
@@ -80,8 +40,10 @@ std::shared_ptr<Memory> OpenClQueue::wrap_host(void* data, std::uint64_t size_by
     if (!device_->info().unified_memory || (device_->info().type != DeviceType::Cpu && !aligned)) return nullptr;
     return guarded("wrapping '" + std::string(name) + "'", [&] {
         const cl_mem_flags flags = CL_MEM_USE_HOST_PTR | (read_only ? CL_MEM_READ_ONLY : CL_MEM_READ_WRITE);
-        return std::make_shared<OpenClMemory>(size_bytes, std::string(name),
-                                              cl::Buffer(device_->context(), flags, size_bytes, data), data);
+        auto memory = std::make_shared<OpenClMemory>(size_bytes, std::string(name));
+        memory->buffer = cl::Buffer(device_->context(), flags, size_bytes, data);
+        memory->host = data;
+        return memory;
     });
 }
 
@@ -111,11 +73,11 @@ void OpenClQueue::launch(Kernel kernel, std::uint32_t group_count, std::uint32_t
         const cl::size_type global = cl::size_type(group_count) * group_size;
         queue_.enqueueNDRangeKernel(object, cl::NullRange, cl::NDRange(global), cl::NDRange(group_size), nullptr,
                                     &event);
-        events_.emplace_back(stage_, std::move(event));
+        clock_.add(std::move(event));
         if (settings().log_launch) log_line(what + ", " + std::to_string(group_count) + " x " + std::to_string(group_size));
         if (settings().synchronous) queue_.finish();
     });
-    if (events_.size() >= max_pending_events) collect_events();
+    if (clock_.is_full()) collect_events();
 }
 
 void OpenClQueue::write(Memory& target, const void* source, std::uint64_t size_bytes) {
@@ -153,34 +115,20 @@ void OpenClQueue::finish() {
     guarded("waiting for " + device_->info().id, [&] { queue_.finish(); });
 }
 
-void OpenClQueue::begin_stage(std::string_view stage) {
-    const auto it = std::ranges::find(stages_, stage, &StageTime::stage);
-    stage_ = static_cast<std::size_t>(it - stages_.begin());
-    if (it == stages_.end()) stages_.push_back({std::string(stage), 0, 0});
+std::vector<StageTime> OpenClQueue::take_timings() {
+    collect_events();
+    return clock_.take_timings();
 }
 
 void OpenClQueue::collect_events() {
     finish();
     guarded("reading profiling data", [&] {
-        for (const auto& [stage, event] : events_) {
+        clock_.collect([](const cl::Event& event) {
             const auto start = event.getProfilingInfo<CL_PROFILING_COMMAND_START>();
             const auto end = event.getProfilingInfo<CL_PROFILING_COMMAND_END>();
-            stages_[stage].time_ms += static_cast<double>(end - start) * 1e-6;
-            ++stages_[stage].launches;
-        }
+            return static_cast<double>(end - start) * 1e-6;
+        });
     });
-    events_.clear();
-}
-
-std::vector<StageTime> OpenClQueue::take_timings() {
-    collect_events();
-    std::vector<StageTime> result;
-    for (StageTime& stage : stages_) {
-        if (stage.launches > 0) result.push_back(stage);
-        stage.time_ms = 0;
-        stage.launches = 0;
-    }
-    return result;
 }
 
 }  // namespace setka::backend

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "backend/opencl/opencl_device.hpp"
+#include "backend/stage_clock.hpp"
 
 namespace setka::backend {
 
@@ -24,7 +25,7 @@ class OpenClQueue final : public Queue {
     void copy(Memory& source, Memory& target, std::uint64_t size_bytes) override;
     void fill(Memory& target, std::uint32_t pattern, std::uint64_t size_bytes) override;
     void finish() override;
-    void begin_stage(std::string_view stage) override;
+    void begin_stage(std::string_view stage) override { clock_.begin_stage(stage); }
     [[nodiscard]] std::vector<StageTime> take_timings() override;
 
   private:
@@ -34,9 +35,7 @@ class OpenClQueue final : public Queue {
     std::shared_ptr<OpenClPool> pool_;
     cl::CommandQueue queue_;
     std::vector<cl::Kernel> kernels_;
-    std::vector<StageTime> stages_;
-    std::size_t stage_ = 0;
-    std::vector<std::pair<std::size_t, cl::Event>> events_;
+    StageClock<cl::Event> clock_;
 };
 
 }  // namespace setka::backend

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+/// How does a queue allocate? From its pool where that has the size, else from the driver, counted against
+/// the budget.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "backend/device.hpp"
+#include "backend/pool.hpp"
+#include "core/settings.hpp"
+#include "setka/error.hpp"
+
+namespace setka::backend {
+
+/// An allocation that goes back to its pool, and its bytes to the device's budget, with the last reference.
+/// Without a device it is memory that somebody else counts.
+template <typename Handle>
+class PooledMemory : public Memory {
+  public:
+    using Memory::Memory;
+    ~PooledMemory() override {
+        if (!device_) return;
+        device_->release(size_bytes());
+        pool_->give(pooled_bytes_, std::move(buffer));
+    }
+
+    Handle buffer;
+
+    /// Takes `pooled_bytes` from `pool`, else from make_handle(pooled_bytes); `device` has reserved
+    /// size_bytes() for it.
+    template <typename MakeHandle>
+    void fill_from(std::shared_ptr<Device> device, std::shared_ptr<Pool<Handle>> pool,
+                   std::uint64_t pooled_bytes, MakeHandle make_handle) {
+        if (auto pooled = pool->take(pooled_bytes)) {
+            buffer = std::move(*pooled);
+        } else {
+            // Unused allocations of other sizes must not push the total over the budget.
+            if (device->in_use_bytes() + pool->cached_bytes() > device->options().memory_budget_bytes)
+                pool->clear();
+            buffer = make_handle(pooled_bytes);
+        }
+        pooled_bytes_ = pooled_bytes;
+        pool_ = std::move(pool);
+        device_ = std::move(device);  // from here on the destructor releases
+    }
+
+  private:
+    std::uint64_t pooled_bytes_ = 0;
+    std::shared_ptr<Device> device_;
+    std::shared_ptr<Pool<Handle>> pool_;
+};
+
+/// A new PooledMem, a kind of PooledMemory<Handle>. make_handle(bytes) asks the driver, and throws if it has
+/// nothing. Throws OutOfMemory, with nothing allocated, if the device's budget or its largest allocation
+/// would be exceeded.
+template <typename PooledMem, typename Handle, typename MakeHandle>
+std::shared_ptr<Memory> allocate_pooled(const std::shared_ptr<Device>& device,
+                                        const std::shared_ptr<Pool<Handle>>& pool, std::uint64_t size_bytes,
+                                        std::string_view name, MakeHandle make_handle) {
+    const std::uint64_t pooled_bytes = Pool<Handle>::pooled_size(size_bytes);
+    const DeviceInfo& info = device->info();
+    if (pooled_bytes > info.max_allocation_bytes)
+        throw Error(ErrorCategory::OutOfMemory, "buffer '" + std::string(name) + "' needs " +
+                                                    std::to_string(size_bytes) + " bytes; " + info.name +
+                                                    " allows " + std::to_string(info.max_allocation_bytes) +
+                                                    " in one allocation");
+    auto memory = std::make_shared<PooledMem>(size_bytes, std::string(name));
+    device->reserve(size_bytes, name);
+    try {
+        memory->fill_from(device, pool, pooled_bytes, make_handle);
+    } catch (...) {
+        device->release(size_bytes);
+        throw;
+    }
+    if (settings().log_memory)
+        log_line("allocated '" + std::string(name) + "', " + std::to_string(size_bytes) + " bytes");
+    return memory;
+}
+
+}  // namespace setka::backend

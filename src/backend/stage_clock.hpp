@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+/// Where does a queue's time go? What was launched in which stage, until its time is known, and the sums of
+/// each stage.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "setka/device.hpp"
+
+namespace setka::backend {
+
+/// Bookkeeping only: a Span is what a backend needs to learn later how long one launch took, an event or two.
+template <typename Span>
+class StageClock {
+  public:
+    /// Spans from here on count towards this stage.
+    void begin_stage(std::string_view stage) {
+        const auto it = std::ranges::find(stages_, stage, &StageTime::stage);
+        stage_ = static_cast<std::size_t>(it - stages_.begin());
+        if (it == stages_.end()) stages_.push_back({std::string(stage), 0, 0});
+    }
+
+    void add(Span span) { pending_.push_back({stage_, std::move(span)}); }
+    /// Whether it is time to collect, so that a long run does not gather events without end.
+    [[nodiscard]] bool is_full() const noexcept { return pending_.size() >= max_pending; }
+
+    /// Adds up the time of every pending span, time_ms(Span&), and forgets it.
+    template <typename TimeOf>
+    void collect(TimeOf time_ms) {
+        for (auto& [stage, span] : pending_) {
+            stages_[stage].time_ms += time_ms(span);
+            ++stages_[stage].launches;
+        }
+        pending_.clear();
+    }
+
+    /// Time of each stage in which something was collected since the last call, in order of first use.
+    [[nodiscard]] std::vector<StageTime> take_timings() {
+        std::vector<StageTime> result;
+        for (StageTime& stage : stages_) {
+            if (stage.launches > 0) result.push_back(stage);
+            stage.time_ms = 0;
+            stage.launches = 0;
+        }
+        return result;
+    }
+
+    static constexpr std::size_t max_pending = 1024;
+
+  private:
+    struct Pending {
+        std::size_t stage;
+        Span span;
+    };
+    /// Launches before the first begin_stage are "other".
+    std::vector<StageTime> stages_{{"other", 0, 0}};
+    std::size_t stage_ = 0;
+    std::vector<Pending> pending_;
+};
+
+}  // namespace setka::backend

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: MIT
+/// Is what the backends share right? Options, stage times and pooled memory, without a device.
+#include <gtest/gtest.h>
+
+#include "backend/pooled_memory.hpp"
+#include "backend/resolve_options.hpp"
+#include "backend/stage_clock.hpp"
+
+namespace setka::backend {
+namespace {
+
+DeviceInfo some_info() {
+    DeviceInfo info;
+    info.name = "Some Device";
+    info.max_work_group_size = 1024;
+    info.max_allocation_bytes = 1 << 20;
+    return info;
+}
+
+DeviceCapabilities some_capabilities() {
+    DeviceCapabilities capabilities;
+    capabilities.kernel_work_group_size = 512;
+    capabilities.memory_bytes = 4000;
+    return capabilities;
+}
+
+/// The category and text of what resolve_options throws.
+std::string refusal(const DeviceOptions& options, const DeviceInfo& info,
+                    const DeviceCapabilities& capabilities) {
+    try {
+        (void)resolve_options(options, info, capabilities);
+    } catch (const Error& error) {
+        return std::string(to_string(error.category())) + ": " + error.what();
+    }
+    return "nothing was thrown";
+}
+
+TEST(ResolveOptions, FillsInWhatIsLeftOpen) {
+    DeviceCapabilities capabilities = some_capabilities();
+    capabilities.default_work_group_size = 64;
+    capabilities.portable_primitives = capabilities.default_primitives = PrimitiveShape::Serial;
+    const DeviceOptions resolved = resolve_options({}, some_info(), capabilities);
+    EXPECT_EQ(resolved.work_group_size, 64u);
+    EXPECT_EQ(resolved.primitives, PrimitiveShape::Serial);
+    EXPECT_EQ(resolved.memory_budget_bytes, 3000u);
+}
+
+TEST(ResolveOptions, KeepsWhatIsGiven) {
+    const DeviceOptions resolved =
+        resolve_options({256, PrimitiveShape::Serial, 77}, some_info(), some_capabilities());
+    EXPECT_EQ(resolved.work_group_size, 256u);
+    EXPECT_EQ(resolved.primitives, PrimitiveShape::Serial);
+    EXPECT_EQ(resolved.memory_budget_bytes, 77u);
+}
+
+TEST(ResolveOptions, LimitsGroupsToTheSmallestOfDeviceAndKernels) {
+    DeviceInfo info = some_info();
+    DeviceCapabilities capabilities = some_capabilities();
+    EXPECT_EQ(refusal({512, {}, 0}, info, capabilities),
+              "invalid argument: work_group_size is 512; Some Device accepts powers of two up to 256");
+    capabilities.kernel_work_group_size = 100;
+    EXPECT_EQ(resolve_options({}, info, capabilities).work_group_size, 64u);
+    EXPECT_EQ(refusal({128, {}, 0}, info, capabilities),
+              "invalid argument: work_group_size is 128; Some Device accepts powers of two up to 64");
+    EXPECT_EQ(refusal({48, {}, 0}, info, capabilities),
+              "invalid argument: work_group_size is 48; Some Device accepts powers of two up to 64");
+    info.max_work_group_size = 1;
+    EXPECT_EQ(resolve_options({}, info, capabilities).work_group_size, 1u);
+    EXPECT_EQ(resolve_options({1, {}, 0}, info, capabilities).work_group_size, 1u);
+}
+
+TEST(ResolveOptions, TakesTheLibraryWhereThereIsOne) {
+    DeviceInfo info = some_info();
+    DeviceCapabilities capabilities = some_capabilities();
+    EXPECT_EQ(refusal({0, PrimitiveShape::Library, 0}, info, capabilities),
+              "unsupported: primitives is Library; OpenCL devices have none: use Portable, Serial or Group");
+    info.backend = Backend::Cuda;
+    capabilities.default_primitives = PrimitiveShape::Library;
+    const auto shape = [&](PrimitiveShape asked) {
+        return resolve_options({0, asked, 0}, info, capabilities).primitives;
+    };
+    EXPECT_EQ(shape(PrimitiveShape::Auto), PrimitiveShape::Library);
+    EXPECT_EQ(shape(PrimitiveShape::Library), PrimitiveShape::Library);
+    EXPECT_EQ(shape(PrimitiveShape::Portable), PrimitiveShape::Group);
+    EXPECT_EQ(shape(PrimitiveShape::Serial), PrimitiveShape::Serial);
+}
+
+TEST(StageClock, SumsByStageInOrderOfFirstUse) {
+    StageClock<double> clock;
+    clock.begin_stage("sort");
+    clock.add(1.0);
+    clock.begin_stage("trace");
+    clock.add(8.0);
+    clock.begin_stage("sort");
+    clock.add(2.0);
+    clock.collect([](double time_ms) { return time_ms; });
+    clock.add(4.0);
+    clock.collect([](double time_ms) { return time_ms; });
+    auto times = clock.take_timings();
+    ASSERT_EQ(times.size(), 2u);
+    EXPECT_EQ(times[0].stage, "sort");
+    EXPECT_EQ(times[0].time_ms, 7);
+    EXPECT_EQ(times[0].launches, 3u);
+    EXPECT_EQ(times[1].stage, "trace");
+    EXPECT_EQ(times[1].time_ms, 8);
+    EXPECT_EQ(times[1].launches, 1u);
+    EXPECT_TRUE(clock.take_timings().empty());
+    clock.begin_stage("trace");
+    clock.add(1.0);
+    clock.collect([](double time_ms) { return time_ms; });
+    times = clock.take_timings();
+    ASSERT_EQ(times.size(), 1u);
+    EXPECT_EQ(times[0].stage, "trace");
+    EXPECT_EQ(times[0].time_ms, 1);
+}
+
+TEST(StageClock, CountsAsOtherWhatHasNoStage) {
+    StageClock<int> clock;
+    clock.add(5);
+    clock.collect([](int time_ms) { return time_ms; });
+    const auto times = clock.take_timings();
+    ASSERT_EQ(times.size(), 1u);
+    EXPECT_EQ(times[0].stage, "other");
+}
+
+TEST(StageClock, AsksToBeCollected) {
+    StageClock<int> clock;
+    for (std::size_t i = 1; i < StageClock<int>::max_pending; ++i) clock.add(0);
+    EXPECT_FALSE(clock.is_full());
+    clock.add(0);
+    EXPECT_TRUE(clock.is_full());
+    clock.collect([](int time_ms) { return time_ms; });
+    EXPECT_FALSE(clock.is_full());
+    EXPECT_EQ(clock.take_timings().at(0).launches, StageClock<int>::max_pending);
+}
+
+/// A device that only counts bytes.
+class CountingDevice final : public Device {
+  public:
+    explicit CountingDevice(std::uint64_t budget_bytes) { options_.memory_budget_bytes = budget_bytes; }
+    [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
+    [[nodiscard]] const DeviceOptions& options() const noexcept override { return options_; }
+    [[nodiscard]] std::shared_ptr<Queue> make_queue() override { return nullptr; }
+    void trim() override {}
+
+  private:
+    DeviceInfo info_ = some_info();
+    DeviceOptions options_;
+};
+
+using Handle = std::shared_ptr<int>;
+using TestMemory = PooledMemory<Handle>;
+
+struct Allocator {
+    std::shared_ptr<Device> device = std::make_shared<CountingDevice>(4096);
+    PoolList<Handle> pools;
+    std::shared_ptr<Pool<Handle>> pool = pools.make_pool();
+    int made = 0;
+
+    std::shared_ptr<Memory> allocate(std::uint64_t size_bytes) {
+        return allocate_pooled<TestMemory>(device, pool, size_bytes, "table",
+                                           [&](std::uint64_t) { return std::make_shared<int>(++made); });
+    }
+};
+
+TEST(PooledMemory, ComesFromThePoolWhereThatHasTheSize) {
+    Allocator allocator;
+    const auto first = allocator.allocate(1000);
+    EXPECT_EQ(allocator.device->in_use_bytes(), 1000u);
+    EXPECT_EQ(first->name(), "table");
+    auto second = allocator.allocate(1000);
+    EXPECT_EQ(allocator.made, 2);
+    second.reset();
+    EXPECT_EQ(allocator.device->in_use_bytes(), 1000u);
+    EXPECT_EQ(allocator.pool->cached_bytes(), 1024u);
+    second = allocator.allocate(1001);  // the same pooled size
+    EXPECT_EQ(allocator.made, 2);
+    EXPECT_EQ(allocator.pool->cached_bytes(), 0u);
+    EXPECT_EQ(allocator.device->peak_bytes(), 2001u);
+}
+
+TEST(PooledMemory, CountsNothingThatFailed) {
+    Allocator allocator;
+    const auto failing = [](std::uint64_t) -> Handle { throw std::bad_alloc(); };
+    EXPECT_THROW((void)allocate_pooled<TestMemory>(allocator.device, allocator.pool, 1000, "table", failing),
+                 std::bad_alloc);
+    EXPECT_EQ(allocator.device->in_use_bytes(), 0u);
+    EXPECT_THROW((void)allocator.allocate(4097), Error);     // the budget
+    EXPECT_THROW((void)allocator.allocate(1 << 21), Error);  // the largest allocation
+    EXPECT_EQ(allocator.device->in_use_bytes(), 0u);
+    EXPECT_EQ(allocator.made, 0);
+}
+
+TEST(PooledMemory, LetsTheCacheNotExceedTheBudget) {
+    Allocator allocator;
+    allocator.allocate(3000).reset();
+    EXPECT_GT(allocator.pool->cached_bytes(), 0u);
+    const auto other = allocator.allocate(2000);
+    EXPECT_EQ(allocator.pool->cached_bytes(), 0u);
+}
+
+TEST(PooledMemory, GoesBackToTheDriverWhenPoolsAreCleared) {
+    Allocator allocator;
+    allocator.allocate(1000).reset();
+    allocator.pools.clear();
+    EXPECT_EQ(allocator.pool->cached_bytes(), 0u);
+    allocator.pool.reset();
+    allocator.pools.clear();  // a pool that is gone is no pool
+}
+
+}  // namespace
+}  // namespace setka::backend
