@@ -10,11 +10,11 @@ SK_KERNEL void probe_rounding(sk_u32 n, SK_GLOBAL const float* tuples, SK_GLOBAL
 }
 
 SK_KERNEL void probe_layout(sk_u32 first, SetkaRay ray, SetkaHit hit, SetkaTraceCost cost, SetkaBounds bounds,
-                            SetkaInstance instance, SetkaGridHeader grid, sk_trace_params params, SkCamera camera,
-                            SkMaterial material, SkLight light, SkBackground background, SkSurfacePoint surface,
-                            SK_GLOBAL const sk_u32* memory, SK_GLOBAL sk_u32* words) {
-    sk_probe_layout(first, ray, hit, cost, bounds, instance, grid, params, camera, material, light, background, surface,
-                    memory, words);
+                            SetkaInstance instance, SetkaGridHeader grid, sk_trace_params params,
+                            SkCamera camera, SkMaterial material, SkLight light, SkBackground background,
+                            SkSurfacePoint surface, SK_GLOBAL const char* memory, SK_GLOBAL sk_u32* words) {
+    sk_probe_layout(first, ray, hit, cost, bounds, instance, grid, params, camera, material, light,
+                    background, surface, memory, words);
 }
 
 SK_KERNEL void probe_barrier(sk_u32 first, sk_u32 rounds, SK_GLOBAL sk_u32* words) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// What if somebody else in the process has changed how floats round? A scope in which the host computes as IEEE 754 says:
-/// rounding to nearest, subnormals kept. A library compiled for fast arithmetic may flush them for a whole thread.
+/// What if somebody else in the process has changed how floats round? A scope in which the host computes as
+/// IEEE 754 says: rounding to nearest, subnormals kept. A library compiled for fast arithmetic may flush them
+/// for a whole thread.
 #pragma once
 
 #include <cfenv>
@@ -11,8 +12,8 @@
 
 namespace setka {
 
-/// Sets the default environment of this thread; its destructor puts back what was there. Call what is to be computed through
-/// a function that is not inlined: compilers know nothing of the environment.
+/// Sets the default environment of this thread; its destructor puts back what was there. Call what is to be
+/// computed through a function that is not inlined: compilers know nothing of the environment.
 class FloatEnvironment {
   public:
     FloatEnvironment() {
@@ -22,7 +23,8 @@ class FloatEnvironment {
         std::fegetenv(&before_);
         std::fesetenv(FE_DFL_ENV);
 #if defined(__SSE2__)
-        // Every exception masked, to nearest, neither FTZ nor DAZ: not every C library's default environment clears those two.
+        // Every exception masked, to nearest, neither FTZ nor DAZ: not every C library's default environment
+        // clears those two.
         _mm_setcsr(0x1f80);
 #endif
     }

@@ -72,11 +72,12 @@ void compare_rounding(const ProbeWords& found, const ProbeWords& expected, Parit
                 ++count;
             }
         if (count == 0) continue;
-        report.differences.push_back(
-            std::string(text) + " with " + operands_text(text, std::span(input.tuples).subspan(4 * first, 4)) +
-            " gives " + value_text(found.rounding[e * n + first], is_float) + " instead of " +
-            value_text(expected.rounding[e * n + first], is_float) + "; " + std::to_string(count) + " of " +
-            std::to_string(n) + " cases differ");
+        report.differences.push_back(std::string(text) + " with " +
+                                     operands_text(text, std::span(input.tuples).subspan(4 * first, 4)) +
+                                     " gives " + value_text(found.rounding[e * n + first], is_float) +
+                                     " instead of " + value_text(expected.rounding[e * n + first], is_float) +
+                                     "; " + std::to_string(count) + " of " + std::to_string(n) +
+                                     " cases differ");
     }
 }
 
@@ -95,12 +96,13 @@ void compare_layout(const ProbeWords& found, const ProbeWords& expected, ParityR
         if (member.name.empty()) record_bytes = should;
         if (is == should) continue;
         const std::string record(member.record);
-        report.differences.push_back(
-            member.name.empty()
-                ? "a " + record + " has " + std::to_string(is) + " bytes instead of " + std::to_string(should)
-                : record + "." + std::string(member.name) + (member.is_argument ? " of a kernel argument" : " in memory") +
-                      " lies " + place_text(is, member, record_bytes) + " instead of " +
-                      place_text(should, member, record_bytes));
+        report.differences.push_back(member.name.empty()
+                                         ? "a " + record + " has " + std::to_string(is) +
+                                               " bytes instead of " + std::to_string(should)
+                                         : record + "." + std::string(member.name) +
+                                               (member.is_argument ? " of a kernel argument" : " in memory") +
+                                               " lies " + place_text(is, member, record_bytes) +
+                                               " instead of " + place_text(should, member, record_bytes));
     }
 }
 
@@ -115,14 +117,15 @@ void compare_barrier(const ProbeWords& found, const ProbeWords& expected, std::u
         }
     if (count == 0) return;
     report.differences.push_back(
-        "barriers: of " + std::to_string(n) + " values passed around groups of " + std::to_string(group_size) +
-        " work-items " + std::to_string(count) + " are wrong; work-item " + std::to_string(first % group_size) +
-        " of group " + std::to_string(first / group_size) + " holds " + hexadecimal(found.barrier[first]) +
-        " instead of " + hexadecimal(expected.barrier[first]));
+        "barriers: of " + std::to_string(n) + " values passed around groups of " +
+        std::to_string(group_size) + " work-items " + std::to_string(count) + " are wrong; work-item " +
+        std::to_string(first % group_size) + " of group " + std::to_string(first / group_size) + " holds " +
+        hexadecimal(found.barrier[first]) + " instead of " + hexadecimal(expected.barrier[first]));
 }
 
 /// Puts the kernels on the queue, which write one after the other into one buffer.
-Buffer<std::uint32_t> enqueue_probe(Queue& queue, std::size_t rounding, std::size_t layout, std::size_t barrier) {
+Buffer<std::uint32_t> enqueue_probe(Queue& queue, std::size_t rounding, std::size_t layout,
+                                    std::size_t barrier) {
     const ProbeInput& input = probe_input();
     const ProbeRecords& r = input.records;
     queue.impl().begin_stage("probe");
@@ -132,10 +135,12 @@ Buffer<std::uint32_t> enqueue_probe(Queue& queue, std::size_t rounding, std::siz
     // What a kernel leaves out is not taken for the answer of an earlier run.
     queue.impl().fill(*words.memory(), 0xa5a5a5a5u, words.size_bytes());
     launch_items(queue, Kernel::probe_rounding, input.tuple_count, tuples, words);
-    launch_groups(queue, Kernel::probe_layout, 1, 1, static_cast<std::uint32_t>(rounding), r.ray, r.hit, r.cost, r.bounds,
-                 r.instance, r.grid, r.params, r.camera, r.material, r.light, r.background, r.surface, memory, words);
-    launch_groups(queue, Kernel::probe_barrier, probe_barrier_groups, queue.device().options().work_group_size,
-                  static_cast<std::uint32_t>(rounding + layout), probe_barrier_rounds, words);
+    launch_groups(queue, Kernel::probe_layout, 1, 1, static_cast<std::uint32_t>(rounding), r.ray, r.hit,
+                  r.cost, r.bounds, r.instance, r.grid, r.params, r.camera, r.material, r.light, r.background,
+                  r.surface, memory, words);
+    launch_groups(queue, Kernel::probe_barrier, probe_barrier_groups,
+                  queue.device().options().work_group_size, static_cast<std::uint32_t>(rounding + layout),
+                  probe_barrier_rounds, words);
     return words;
 }
 
@@ -154,13 +159,14 @@ ParityReport compare_probe(const ProbeWords& found, std::uint32_t group_size) {
 ParityReport run_probe(Queue& queue) {
     const std::uint32_t group_size = queue.device().options().work_group_size;
     const std::size_t rounding = probe_expressions().size() * probe_input().tuple_count;
-    const std::size_t layout = probe_input().memory.size(), barrier = probe_barrier_groups * group_size;
+    const std::size_t layout = probe_input().memory.size() / 4, barrier = probe_barrier_groups * group_size;
     const std::vector<std::uint32_t> words = queue.download(enqueue_probe(queue, rounding, layout, barrier));
     const auto part = [&](std::size_t first, std::size_t count) {
         const auto begin = words.begin() + static_cast<std::ptrdiff_t>(first);
         return std::vector<std::uint32_t>(begin, begin + static_cast<std::ptrdiff_t>(count));
     };
-    return compare_probe({part(0, rounding), part(rounding, layout), part(rounding + layout, barrier)}, group_size);
+    return compare_probe({part(0, rounding), part(rounding, layout), part(rounding + layout, barrier)},
+                         group_size);
 }
 
 }  // namespace setka

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Does this device compute what every other one does? A few hundred operands through the kernels' own arithmetic, every
-/// shared record, and a barrier, before anything else runs on it.
+/// Does this device compute what every other one does? A few hundred operands through the kernels' own
+/// arithmetic, every shared record, and a barrier, before anything else runs on it.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +20,8 @@ struct ProbeWords {
 /// Runs the kernels and compares. Throws what the queue throws.
 [[nodiscard]] ParityReport run_probe(Queue& queue);
 
-/// What `found` says of a device with groups of `group_size` work-items: one sentence for each expression, record member and
-/// barrier that differs from what is expected.
+/// What `found` says of a device with groups of `group_size` work-items: one sentence for each expression,
+/// record member and barrier that differs from what is expected.
 [[nodiscard]] ParityReport compare_probe(const ProbeWords& found, std::uint32_t group_size);
 
 }  // namespace setka

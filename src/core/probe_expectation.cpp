@@ -34,7 +34,9 @@ class Bits {
         return std::bit_cast<float>((next() & 0x807fffffu) | exponent << 23);
     }
     /// An odd whole number below 2^bits.
-    float odd(std::uint32_t bits) { return static_cast<float>((next() & ((1u << bits) - 1)) | 1u | 1u << (bits - 1)); }
+    float odd(std::uint32_t bits) {
+        return static_cast<float>((next() & ((1u << bits) - 1)) | 1u | 1u << (bits - 1));
+    }
 
   private:
     std::uint64_t state_ = 1;
@@ -42,36 +44,53 @@ class Bits {
 
 /// Where one rounding more or less shows, one line a case.
 constexpr Tuple chosen[] = {
-    {0x1.001p0f, -0x1.002p0f, 0x1.001p0f, 0x1.001p0f},              // a fused a*c + b keeps 2^-24
-    {1, 0x1p-24f, 0x1p-24f, 0x1p-24f},                              // halfway, to even
-    {0x1.000002p0f, 0x1p-24f, -0x1p-24f, 3},                        // halfway, to even upwards
-    {1, 0x1.000002p-24f, 0x1.fffffep-25f, 0x1p-50f},                // just beyond and before halfway
-    {0x1p24f, 1, 1, 1},                                             // (b + c) + d and (a + c) - a
+    {0x1.001p0f, -0x1.002p0f, 0x1.001p0f, 0x1.001p0f},  // a fused a*c + b keeps 2^-24
+    {1, 0x1p-24f, 0x1p-24f, 0x1p-24f},                  // halfway, to even
+    {0x1.000002p0f, 0x1p-24f, -0x1p-24f, 3},            // halfway, to even upwards
+    {1, 0x1.000002p-24f, 0x1.fffffep-25f, 0x1p-50f},    // just beyond and before halfway
+    {0x1p24f, 1, 1, 1},                                 // (b + c) + d and (a + c) - a
     {1e8f, 1e8f, 1, -1e8f},
     {1e-30f, 1e30f, -1e30f, 1e-30f},
-    {1, 3, 49, 10},                                                 // quotients of rounded reciprocals
-    {0x1p-126f, 0x1.fffffep-1f, 0x1p-126f, 0x1p-149f},              // results that just become subnormal
-    {0x1.fffffep127f, 0x1.fffffep127f, 0x1p127f, -0x1.fffffep127f}, // overflow
+    {1, 3, 49, 10},                                                  // quotients of rounded reciprocals
+    {0x1p-126f, 0x1.fffffep-1f, 0x1p-126f, 0x1p-149f},               // results that just become subnormal
+    {0x1.fffffep127f, 0x1.fffffep127f, 0x1p127f, -0x1.fffffep127f},  // overflow
     {0.0f, -0.0f, -0.0f, 0.0f},
     {-0.0f, -0.0f, 1, -0.0f},
-    {999.99994f, 1000, 63.999996f, 1},                              // the last cell
-    {2147483520.0f, 16777217.0f, 8388607.5f, 4194303.75f},          // the largest integers
+    {999.99994f, 1000, 63.999996f, 1},                      // the last cell
+    {2147483520.0f, 16777217.0f, 8388607.5f, 4194303.75f},  // the largest integers
 };
 
 /// Every pair of these, with others of them behind.
-constexpr float special[] = {
-    0.0f,        -0.0f,        1.0f,    -1.0f,           0x1.000002p0f,      0x1.fffffep-1f,
-    -3.0f,       0x1p-149f,    -0x1.fffffcp-127f,        0x1p-126f,          0x1.fffffep127f,
-    -0x1p-75f,   8388609.0f,   std::numeric_limits<float>::infinity(),       std::numeric_limits<float>::quiet_NaN()};
+constexpr float special[] = {0.0f,
+                             -0.0f,
+                             1.0f,
+                             -1.0f,
+                             0x1.000002p0f,
+                             0x1.fffffep-1f,
+                             -3.0f,
+                             0x1p-149f,
+                             -0x1.fffffcp-127f,
+                             0x1p-126f,
+                             0x1.fffffep127f,
+                             -0x1p-75f,
+                             8388609.0f,
+                             std::numeric_limits<float>::infinity(),
+                             std::numeric_limits<float>::quiet_NaN()};
 
 /// Families of random operands; each returns one tuple.
 constexpr Tuple (*families[])(Bits&) = {
     // Around 1, where approximations of quotients and roots show.
-    [](Bits& r) -> Tuple { return {r.number(124, 130), r.number(124, 130), r.number(124, 130), r.number(124, 130)}; },
+    [](Bits& r) -> Tuple {
+        return {r.number(124, 130), r.number(124, 130), r.number(124, 130), r.number(124, 130)};
+    },
     // Anything finite.
-    [](Bits& r) -> Tuple { return {r.number(0, 254), r.number(0, 254), r.number(0, 254), r.number(0, 254)}; },
+    [](Bits& r) -> Tuple {
+        return {r.number(0, 254), r.number(0, 254), r.number(0, 254), r.number(0, 254)};
+    },
     // Subnormal operands and results.
-    [](Bits& r) -> Tuple { return {r.number(0, 30), r.number(0, 2), r.number(1, 22), r.number(0, 0)}; },
+    [](Bits& r) -> Tuple {
+        return {r.number(0, 30), r.number(0, 2), r.number(1, 22), r.number(0, 0)};
+    },
     // a*d - b*c is 0 unless one product is fused.
     [](Bits& r) -> Tuple {
         const float x = r.number(125, 129), y = r.number(125, 129);
@@ -83,7 +102,9 @@ constexpr Tuple (*families[])(Bits&) = {
         return {large, large, small, -large};
     },
     // Products of 25 bits: halfway between two floats.
-    [](Bits& r) -> Tuple { return {r.odd(12), r.odd(13), r.odd(13), r.odd(12)}; },
+    [](Bits& r) -> Tuple {
+        return {r.odd(12), r.odd(13), r.odd(13), r.odd(12)};
+    },
     // Next to whole numbers, where cells meet.
     [](Bits& r) -> Tuple {
         const auto beside = [&] {
@@ -106,7 +127,8 @@ std::vector<Tuple> make_tuples() {
     constexpr std::size_t n = std::size(special);
     for (std::size_t i = 0; i < n; ++i)
         for (std::size_t j = 0; j < n; ++j)
-            tuples.push_back({special[i], special[j], special[(5 * i + j + 3) % n], special[(i + 7 * j + 1) % n]});
+            tuples.push_back(
+                {special[i], special[j], special[(5 * i + j + 3) % n], special[(i + 7 * j + 1) % n]});
     Bits bits;
     for (const auto family : families)
         for (int k = 0; k < tuples_a_family; ++k) tuples.push_back(family(bits));
@@ -114,8 +136,8 @@ std::vector<Tuple> make_tuples() {
 }
 
 /// A turn, a scale and a shift whose products are all inexact.
-constexpr float matrix[12] = {0.8660254f, -0.35355338f, 0.35355338f, 0.1f, 0.0f,        0.70710677f,
-                              0.70710677f, -0.3f,       -0.5f,       0.6f, 1.41421354f, 7.7f};
+constexpr float matrix[12] = {0.8660254f,  -0.35355338f, 0.35355338f, 0.1f, 0.0f,        0.70710677f,
+                              0.70710677f, -0.3f,        -0.5f,       0.6f, 1.41421354f, 7.7f};
 
 template <typename Record>
 Record patterned(std::uint32_t slot) {
@@ -127,8 +149,9 @@ Record patterned(std::uint32_t slot) {
 
 // Each list of members covers its record.
 #define SETKA_COUNT(member) +1
-#define SETKA_CHECK_LIST(type, variable, members) \
-    static_assert(sizeof(type) == 4 * (0 members(SETKA_COUNT, SETKA_COUNT)), #type " has members that are not listed");
+#define SETKA_CHECK_LIST(type, variable, members)                            \
+    static_assert(sizeof(type) == 4 * (0 members(SETKA_COUNT, SETKA_COUNT)), \
+                  #type " has members that are not listed");
 SK_PROBE_RECORDS(SETKA_CHECK_LIST)
 #undef SETKA_CHECK_LIST
 #undef SETKA_COUNT
@@ -147,8 +170,12 @@ ProbeInput make_input() {
 #define SETKA_FILL(type, variable, members) input.records.variable = patterned<type>(slot++);
     SK_PROBE_RECORDS(SETKA_FILL)
 #undef SETKA_FILL
-    for (slot = 0; slot < record_count; ++slot)
-        for (std::uint32_t word = 0; word < SK_PROBE_SLOT; ++word) input.memory.push_back(probe_pattern(slot, word));
+    // Copied as bytes: the records are read from there as what they are.
+    input.memory.resize(record_count * SK_PROBE_SLOT * 4);
+    for (std::uint32_t i = 0; i < record_count * SK_PROBE_SLOT; ++i) {
+        const std::uint32_t word = probe_pattern(i / SK_PROBE_SLOT, i % SK_PROBE_SLOT);
+        std::memcpy(&input.memory[4 * i], &word, 4);
+    }
     return input;
 }
 
@@ -184,7 +211,8 @@ const std::vector<ProbeMember>& probe_members() {
             std::uint32_t at = slot * SK_PROBE_SLOT;
             list.push_back({record, "", slot, false, at++});
             for (const bool is_argument : {true, false})
-                for (const std::string_view name : names) list.push_back({record, name, slot, is_argument, at++});
+                for (const std::string_view name : names)
+                    list.push_back({record, name, slot, is_argument, at++});
             ++slot;
         };
 #define SETKA_NAME(member) #member,
@@ -207,13 +235,15 @@ ProbeWords expected_probe(std::uint32_t group_size) {
     }
     words.layout.resize(record_count * SK_PROBE_SLOT);
     const ProbeRecords& r = input.records;
-    sk_probe_layout(0, r.ray, r.hit, r.cost, r.bounds, r.instance, r.grid, r.params, r.camera, r.material, r.light,
-                    r.background, r.surface, input.memory.data(), words.layout.data());
+    sk_probe_layout(0, r.ray, r.hit, r.cost, r.bounds, r.instance, r.grid, r.params, r.camera, r.material,
+                    r.light, r.background, r.surface, reinterpret_cast<const char*>(input.memory.data()),
+                    words.layout.data());
     std::uint64_t moved = 1;
     for (std::uint32_t round = 0; round < probe_barrier_rounds; ++round) moved += round + 2;
     for (std::uint32_t group = 0; group < probe_barrier_groups; ++group)
         for (std::uint32_t item = 0; item < group_size; ++item)
-            words.barrier.push_back(sk_probe_token(group, static_cast<std::uint32_t>((item + moved) % group_size)));
+            words.barrier.push_back(
+                sk_probe_token(group, static_cast<std::uint32_t>((item + moved) % group_size)));
     return words;
 }
 

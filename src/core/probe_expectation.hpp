@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-/// What does the probe ask, and what is the right answer? Operands and records for the kernels, and the words that they
-/// have to write, computed on the host by the same bodies.
+/// What does the probe ask, and what is the right answer? Operands and records for the kernels, and the words
+/// that they have to write, computed on the host by the same bodies.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 #include <vector>
@@ -23,7 +24,7 @@ struct ProbeInput {
     std::uint32_t tuple_count = 0;
     std::vector<float> tuples;  ///< four floats each, then a matrix of twelve
     ProbeRecords records{};
-    std::vector<std::uint32_t> memory;  ///< a slot for each record: two of them, side by side
+    std::vector<std::byte> memory;  ///< a slot for each record: two of them, side by side
 };
 
 /// An expression that every tuple is put through.
@@ -48,7 +49,8 @@ inline constexpr std::uint32_t probe_barrier_rounds = 3;
 [[nodiscard]] const std::vector<ProbeExpression>& probe_expressions();
 [[nodiscard]] const std::vector<ProbeMember>& probe_members();
 
-/// The word of `record`'s slot in memory and, at first, in an argument: which byte it came from can be told from it.
+/// The word of `record`'s slot in memory and, at first, in an argument: which byte it came from can be told
+/// from it.
 [[nodiscard]] constexpr std::uint32_t probe_pattern(std::uint32_t slot, std::uint32_t word) noexcept {
     return 0x40000000u + (slot << 8) + word;
 }

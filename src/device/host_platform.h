@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /**
- * How does host C++ spell the words of the dialect (src/device/dialect.h)? The device probe computes with it what a device has to
- * answer, and unit tests run the same bodies under sanitizers. Every group has one work-item, as in
- * PrimitiveShape::Serial, so that a barrier has nobody to wait for; `sk_host_group` is the number of the group that runs.
+ * How does host C++ spell the words of the dialect (src/device/dialect.h)? The device probe computes with it
+ * what a device has to answer, and unit tests run the same bodies under sanitizers. Every group has one
+ * work-item, as in PrimitiveShape::Serial, so that a barrier has nobody to wait for; `sk_host_group` is the
+ * number of the group that runs.
  */
 #ifndef SETKA_PLATFORM_H
 #define SETKA_PLATFORM_H

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /**
- * Does a device compute as setka needs it to? Expressions over fixed operands, the layout of every shared record, and values
- * passed around a group between barriers. The host evaluates the same bodies (src/core/probe_expectation.cpp) and compares.
+ * Does a device compute as setka needs it to? Expressions over fixed operands, the layout of every shared
+ * record, and values passed around a group between barriers. The host evaluates the same bodies
+ * (src/core/probe_expectation.cpp) and compares.
  */
 #ifndef SETKA_DEVICE_PROBE_PROBE_H
 #define SETKA_DEVICE_PROBE_PROBE_H
@@ -28,6 +29,7 @@ SK_FUNCTION sk_u32 sk_probe_compare(float a, float b) {
 
 SK_FUNCTION sk_u32 sk_probe_truncate(float a) { return a >= 0.0f && a < 0x1p31f ? (sk_u32)a : 0xffffffffu; }
 
+/* clang-format off */
 /**
  * What is evaluated for each tuple (a, b, c, d): F(name, text, a float) and U(name, text, an integer). Products differ
  * from line to line where a compiler that finds one computed already would not fuse it. `m` is a fixed matrix.
@@ -62,9 +64,11 @@ SK_FUNCTION sk_u32 sk_probe_truncate(float a) { return a >= 0.0f && a < 0x1p31f 
     F(transformed, "x of matrix * (a, b, c)", sk_transform_point(m, sk_make3(a, b, c)).x)           \
     F(length, "length of (a, b, c)", sk_length(sk_make3(a, b, c)))                                  \
     F(accurate, "accurate a * b - c * d", sk_accurate_difference(a, b, c, d))
+/* clang-format on */
 
 /** words[e * n + i] = expression e of tuple i. Behind the n tuples lies the matrix. */
-SK_FUNCTION void sk_probe_rounding(sk_u32 i, sk_u32 n, SK_GLOBAL const float* tuples, SK_GLOBAL sk_u32* words) {
+SK_FUNCTION void sk_probe_rounding(sk_u32 i, sk_u32 n, SK_GLOBAL const float* tuples,
+                                   SK_GLOBAL sk_u32* words) {
     SK_GLOBAL const float* m = tuples + 4u * n;
     const float a = tuples[4u * i], b = tuples[4u * i + 1u], c = tuples[4u * i + 2u], d = tuples[4u * i + 3u];
     sk_u32 at = i;
@@ -82,9 +86,9 @@ SK_FUNCTION void sk_probe_rounding(sk_u32 i, sk_u32 n, SK_GLOBAL const float* tu
 /* sk_echo_ray and the others: writes the members of a record, returns where the next word goes. */
 #define SK_ECHO_FLOAT(member) words[at++] = sk_float_bits(record.member);
 #define SK_ECHO_INTEGER(member) words[at++] = record.member;
-#define SK_ECHO_FUNCTION(type, variable, members)                                                   \
-    SK_FUNCTION sk_u32 sk_echo_##variable(type record, sk_u32 at, SK_GLOBAL sk_u32* words) {        \
-        members(SK_ECHO_FLOAT, SK_ECHO_INTEGER) return at;                                          \
+#define SK_ECHO_FUNCTION(type, variable, members)                                            \
+    SK_FUNCTION sk_u32 sk_echo_##variable(type record, sk_u32 at, SK_GLOBAL sk_u32* words) { \
+        members(SK_ECHO_FLOAT, SK_ECHO_INTEGER) return at;                                   \
     }
 SK_PROBE_RECORDS(SK_ECHO_FUNCTION)
 #undef SK_ECHO_FLOAT
@@ -92,19 +96,20 @@ SK_PROBE_RECORDS(SK_ECHO_FUNCTION)
 #undef SK_ECHO_FUNCTION
 
 /** Fills the slot of each record in words[first ..]; `memory` holds as many slots. */
-SK_FUNCTION void sk_probe_layout(sk_u32 first, SetkaRay ray, SetkaHit hit, SetkaTraceCost cost, SetkaBounds bounds,
-                                 SetkaInstance instance, SetkaGridHeader grid, sk_trace_params params, SkCamera camera,
-                                 SkMaterial material, SkLight light, SkBackground background, SkSurfacePoint surface,
-                                 SK_GLOBAL const sk_u32* memory, SK_GLOBAL sk_u32* words) {
-    sk_u32 slot = 0u;
-#define SK_FILL_SLOT(type, variable, members)                                                       \
-    {                                                                                               \
-        const sk_u32 start = first + slot * SK_PROBE_SLOT;                                          \
-        sk_u32 at;                                                                                  \
-        words[start] = (sk_u32)sizeof(type);                                                        \
-        at = sk_echo_##variable(variable, start + 1u, words);                                       \
-        sk_echo_##variable(((SK_GLOBAL const type*)(memory + slot * SK_PROBE_SLOT))[1], at, words); \
-        slot += 1u;                                                                                 \
+SK_FUNCTION void sk_probe_layout(sk_u32 first, SetkaRay ray, SetkaHit hit, SetkaTraceCost cost,
+                                 SetkaBounds bounds, SetkaInstance instance, SetkaGridHeader grid,
+                                 sk_trace_params params, SkCamera camera, SkMaterial material, SkLight light,
+                                 SkBackground background, SkSurfacePoint surface,
+                                 SK_GLOBAL const char* memory, SK_GLOBAL sk_u32* words) {
+    sk_u32 start = first;
+#define SK_FILL_SLOT(type, variable, members)                              \
+    {                                                                      \
+        SK_GLOBAL const type* records = (SK_GLOBAL const type*)memory;     \
+        const sk_u32 at = sk_echo_##variable(variable, start + 1u, words); \
+        sk_echo_##variable(records[1], at, words);                         \
+        words[start] = (sk_u32)sizeof(type);                               \
+        start += SK_PROBE_SLOT;                                            \
+        memory += SK_PROBE_SLOT * 4u;                                      \
     }
     SK_PROBE_RECORDS(SK_FILL_SLOT)
 #undef SK_FILL_SLOT
@@ -114,11 +119,12 @@ SK_FUNCTION void sk_probe_layout(sk_u32 first, SetkaRay ray, SetkaHit hit, Setka
 SK_FUNCTION sk_u32 sk_probe_token(sk_u32 group, sk_u32 item) { return 0x40000000u + (group << 16) + item; }
 
 /**
- * Passes the tokens of a group around it: a value is read, and its place written by another work-item behind the barrier. Once
- * in straight code, then in `rounds` turns of a loop; turn r moves by r + 2. Some drivers of 2025 read again behind the
- * barrier what was read before it.
+ * Passes the tokens of a group around it: a value is read, and its place written by another work-item behind
+ * the barrier. Once in straight code, then in `rounds` turns of a loop; turn r moves by r + 2. Some drivers
+ * of 2025 read again behind the barrier what was read before it.
  */
-SK_FUNCTION void sk_probe_barrier(SK_LOCAL sk_u32* scratch, sk_u32 first, sk_u32 rounds, SK_GLOBAL sk_u32* words) {
+SK_FUNCTION void sk_probe_barrier(SK_LOCAL sk_u32* scratch, sk_u32 first, sk_u32 rounds,
+                                  SK_GLOBAL sk_u32* words) {
     const sk_u32 item = sk_local_id();
     const sk_u32 size = sk_local_size();
     scratch[item] = sk_probe_token(sk_group_id(), item);

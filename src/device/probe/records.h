@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /**
- * Which records do host and device share, and what are their members? The lists from which the device probe checks that both
- * compilers lay them out alike. The host asserts that each list covers its record.
+ * Which records do host and device share, and what are their members? The lists from which the device probe
+ * checks that both compilers lay them out alike. The host asserts that each list covers its record.
  */
 #ifndef SETKA_DEVICE_PROBE_RECORDS_H
 #define SETKA_DEVICE_PROBE_RECORDS_H
@@ -10,6 +10,7 @@
 #include "device/trace/params.h"
 #include "setka/layout.h"
 
+/* clang-format off */
 /* Members word by word: F(a float), U(an integer). */
 #define SK_PROBE_THREE(F, name) F(name[0]) F(name[1]) F(name[2])
 #define SK_PROBE_FOUR(F, name, k) F(name[k]) F(name[k + 1]) F(name[k + 2]) F(name[k + 3])
@@ -56,10 +57,12 @@
     R(SkLight, light, SK_MEMBERS_LIGHT)                                                             \
     R(SkBackground, background, SK_MEMBERS_BACKGROUND)                                              \
     R(SkSurfacePoint, surface, SK_MEMBERS_SURFACE)
+/* clang-format on */
 
 /**
- * Words kept for each record, in what the kernel reads and in what it writes. Read: two records side by side. Written: the size in
- * bytes, then the members as a kernel argument holds them, then those of the second record in memory.
+ * Words kept for each record, in what the kernel reads and in what it writes. Read: two records side by side.
+ * Written: the size in bytes, then the members as a kernel argument holds them, then those of the second
+ * record in memory.
  */
 #define SK_PROBE_SLOT 64u
 
