@@ -41,7 +41,8 @@ struct DeviceInfo {
     std::uint64_t local_memory_bytes = 0;
     std::uint64_t max_parameter_bytes = 0;
     bool unified_memory = false;                ///< host and device share memory: host buffers are used in place
-    bool correctly_rounded_divide_sqrt = false; ///< needed for identical bits
+    /// What the driver states of itself; what it does is in Device::parity().
+    bool correctly_rounded_divide_sqrt = false;
 };
 
 /// Every usable device of every backend, in a stable order. A missing driver means fewer devices, never an error.
@@ -59,6 +60,21 @@ enum class PrimitiveShape {
     Group,     ///< groups of work-items with local memory: for GPUs
 };
 
+/// Whether a device computes as every other one does: checked when it is opened, by putting some hundred operands through
+/// the kernels' own arithmetic, every record that host and device share, and a barrier.
+struct ParityReport {
+    bool is_capable = false;
+    /// One sentence each; empty if capable. The expression, its operands, what the device gives and what is right; or a
+    /// record's member and where it lies; or a barrier that lets values pass.
+    std::vector<std::string> differences;
+};
+
+/// Whether a device has to give the same bits as every other one.
+enum class ParityRequirement {
+    Required,  ///< a device that is not parity-capable is refused
+    None,      ///< it is opened: tables, hits and pictures may differ from those of other devices, or be wrong
+};
+
 /// How a device is opened. The defaults are right for use; the rest serves tests and measurements.
 struct DeviceOptions {
     /// Work-items in a group of per-element kernels: a power of two up to 256; 0 picks 64 on a CPU and 128 elsewhere.
@@ -66,6 +82,7 @@ struct DeviceOptions {
     PrimitiveShape primitives = PrimitiveShape::Auto;
     /// Bytes that setka may hold on the device at a time; 0 picks three quarters of the device's memory.
     std::uint64_t memory_budget_bytes = 0;
+    ParityRequirement parity = ParityRequirement::Required;
 };
 
 class Queue;
@@ -75,11 +92,14 @@ class Device {
   public:
     /// Opens the device with this id, or the one device whose name contains `selector` (ignoring case). With an empty
     /// selector: the environment's SETKA_DEVICE, else the first GPU, else the first device.
-    /// Throws InvalidArgument if nothing or more than one device matches, Unsupported if there is no device at all.
+    /// Throws InvalidArgument if nothing or more than one device matches; Unsupported if there is no device at all, or if the
+    /// one that was chosen is not parity-capable and that is required.
     [[nodiscard]] static Device open(std::string_view selector = {}, const DeviceOptions& options = {});
 
     [[nodiscard]] const DeviceInfo& info() const noexcept;
     [[nodiscard]] const DeviceOptions& options() const noexcept;  ///< with every "0" and "Auto" resolved
+    /// Found when the device was opened, at the work-group size of options().
+    [[nodiscard]] const ParityReport& parity() const noexcept;
     [[nodiscard]] Queue make_queue() const;
 
     /// Bytes of live buffers now, and the most there were since the last reset_peak_memory().

@@ -79,7 +79,15 @@ class Device : public std::enable_shared_from_this<Device> {
     [[nodiscard]] virtual std::shared_ptr<Queue> make_queue() = 0;
     virtual void trim() = 0;
 
-    /// Counts bytes against the budget; throws OutOfMemory, with nothing counted, if they do not fit.
+    /// What the probe found; set once, before the device is handed out.
+    [[nodiscard]] const ParityReport& parity() const noexcept { return parity_; }
+    void set_parity(ParityReport report) {
+        parity_ = std::move(report);
+        is_probed_ = true;
+    }
+
+    /// Counts bytes against the budget; throws OutOfMemory, with nothing counted, if they do not fit. The probe's own bytes
+    /// always do: no budget keeps a device from being checked.
     void reserve(std::uint64_t size_bytes, std::string_view name);
     void release(std::uint64_t size_bytes) noexcept { in_use_bytes_ -= size_bytes; }
     [[nodiscard]] std::uint64_t in_use_bytes() const noexcept { return in_use_bytes_; }
@@ -87,6 +95,8 @@ class Device : public std::enable_shared_from_this<Device> {
     void reset_peak() noexcept { peak_bytes_ = in_use_bytes_.load(); }
 
   private:
+    ParityReport parity_;
+    bool is_probed_ = false;
     std::atomic<std::uint64_t> in_use_bytes_{0};
     std::atomic<std::uint64_t> peak_bytes_{0};
 };

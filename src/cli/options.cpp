@@ -141,12 +141,19 @@ void DeviceSelection::add_to(CLI::App& app) {
         ->group(group);
     add_choice<PrimitiveShape>(app, "--primitives", options.primitives,
                                {{"auto", PrimitiveShape::Auto},
+                                {"library", PrimitiveShape::Library},
+                                {"portable", PrimitiveShape::Portable},
                                 {"serial", PrimitiveShape::Serial},
                                 {"group", PrimitiveShape::Group}},
                                "how scan, sort and reduce are laid out")
         ->group(group);
     add_parsed(app, "--memory-budget", options.memory_budget_bytes, parse_bytes, "BYTES",
                "most bytes to hold on the device: a number with K, M, G or nothing")
+        ->group(group);
+    add_choice<ParityRequirement>(
+        app, "--parity", options.parity,
+        {{"required", ParityRequirement::Required}, {"none", ParityRequirement::None}},
+        "whether the device must compute as all others do; 'setka devices' says which do")
         ->group(group);
 }
 

@@ -7,6 +7,7 @@
 
 #include "backend/device.hpp"
 #include "backend/registry.hpp"
+#include "core/probe.hpp"
 #include "core/settings.hpp"
 #include "setka/error.hpp"
 
@@ -69,16 +70,34 @@ const backend::DeviceEntry& choose(const backend::Registry& registry, std::strin
     return *matches.front();
 }
 
+[[noreturn]] void refuse(const Device& device) {
+    const std::vector<std::string>& differences = device.parity().differences;
+    const std::size_t more = differences.size() - 1;
+    throw Error(ErrorCategory::Unsupported,
+                "device " + device.info().id + " (" + device.info().name + ") is not parity-capable: " + differences[0] +
+                    (more == 0 ? "" : " (and " + std::to_string(more) + " more differences)") +
+                    ". Its results may differ from those of other devices; to use it all the same, set "
+                    "DeviceOptions::parity to ParityRequirement::None (--parity none)");
+}
+
 }  // namespace
 
 Device Device::open(std::string_view selector, const DeviceOptions& options) {
     const backend::Registry registry = backend::find_devices();
     if (selector.empty()) selector = settings().device;
-    return Device(choose(registry, selector).open(options));
+    const Device device(choose(registry, selector).open(options));
+    {
+        Queue queue = device.make_queue();
+        device.impl()->set_parity(run_probe(queue));
+    }
+    device.reset_peak_memory();
+    if (options.parity == ParityRequirement::Required && !device.parity().is_capable) refuse(device);
+    return device;
 }
 
 const DeviceInfo& Device::info() const noexcept { return impl_->info(); }
 const DeviceOptions& Device::options() const noexcept { return impl_->options(); }
+const ParityReport& Device::parity() const noexcept { return impl_->parity(); }
 Queue Device::make_queue() const { return Queue(*this, impl_->make_queue()); }
 std::uint64_t Device::memory_in_use_bytes() const noexcept { return impl_->in_use_bytes(); }
 std::uint64_t Device::peak_memory_bytes() const noexcept { return impl_->peak_bytes(); }
@@ -101,7 +120,7 @@ int backend::Queue::library_sort(const SortBuffers&, std::uint32_t, std::uint32_
 void backend::Device::reserve(std::uint64_t size_bytes, std::string_view name) {
     const std::uint64_t budget = options().memory_budget_bytes;
     const std::uint64_t now = in_use_bytes_ += size_bytes;
-    if (now > budget) {
+    if (now > budget && is_probed_) {
         in_use_bytes_ -= size_bytes;
         throw Error(ErrorCategory::OutOfMemory,
                     "buffer '" + std::string(name) + "' needs " + std::to_string(size_bytes) + " bytes; " +

@@ -6,6 +6,7 @@
 
 // Each name is an entry point in kernels_cl/ and in kernels_cu/.
 #define SETKA_KERNEL_LIST(X)                                                                               \
+    X(probe_rounding) X(probe_layout) X(probe_barrier)                                                     \
     X(scan_reduce) X(scan_spine) X(scan_apply)                                                             \
     X(sort_count) X(sort_scatter)                                                                          \
     X(reduce_bounds) X(reduce_bounds_partial)                                                              \

@@ -61,6 +61,13 @@ TEST(BadInput, UnknownDevice) {
     expect_one_clear_line(run({"build", "cube", "--device", "opencl:99"}), {"opencl:99"});
 }
 
+TEST(BadInput, PrimitivesThatTheDeviceHasNot) {
+    SETKA_NEED_DEVICE();
+    if (run({"devices"}).output.find("opencl:0 ") == std::string::npos) GTEST_SKIP() << "no OpenCL device";
+    expect_one_clear_line(run({"build", "cube", "--device", "opencl:0", "--primitives", "library"}),
+                          {"Library"});
+}
+
 TEST(BadInput, NoDevice) {
     const Folder no_drivers;
     const std::vector<std::pair<std::string, std::string>> environment{

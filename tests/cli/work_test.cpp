@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -52,6 +53,55 @@ TEST(Devices, AreListed) {
     const std::string id = report["devices"][0]["id"];
     EXPECT_THAT(run({"devices"}).output, HasSubstr(id));
     EXPECT_EQ(run_json({"build", "cube", "--device", id})["triangles"], 12);
+}
+
+TEST(Devices, AreParityCapable) {
+    SETKA_NEED_DEVICE();
+    const json devices = run_json({"devices"})["devices"];
+    for (const json& device : devices) {
+        EXPECT_EQ(device["parity"]["capable"], true) << device;
+        EXPECT_TRUE(device["parity"]["differences"].empty()) << device;
+    }
+    EXPECT_THAT(run({"devices"}).output, HasSubstr("parity-capable"));
+}
+
+/// PoCL adds these flags to every program; other drivers do not know the variable.
+TEST(Devices, WithRelaxedArithmeticAreListedRefusedAndOpenOnRequest) {
+    SETKA_NEED_DEVICE();
+    const Folder cache;
+    const std::vector<std::pair<std::string, std::string>> relaxed{
+        {"POCL_EXTRA_BUILD_FLAGS", "-cl-denorms-are-zero"}, {"POCL_CACHE_DIR", cache.path().string()}};
+    const json devices = json::parse(run({"devices", "--json"}, relaxed).output)["devices"];
+    const auto refused = std::find_if(devices.begin(), devices.end(), [](const json& device) {
+        return device["parity"]["capable"] == false;
+    });
+    if (refused == devices.end()) GTEST_SKIP() << "no device of a PoCL that follows POCL_EXTRA_BUILD_FLAGS";
+    const std::string first = (*refused)["parity"]["differences"][0], id = (*refused)["id"];
+    EXPECT_THAT(first, HasSubstr("instead of"));
+    const Outcome listed = run({"devices"}, relaxed);
+    EXPECT_EQ(listed.exit_code, 0);
+    EXPECT_THAT(listed.output, HasSubstr("NOT parity-capable"));
+    EXPECT_THAT(listed.output, HasSubstr(first));
+    expect_one_clear_line(run({"build", "cube", "--device", id}, relaxed), {id, first, "--parity none"});
+    const Outcome used = run({"build", "cube", "--device", id, "--parity", "none"}, relaxed);
+    EXPECT_EQ(used.exit_code, 0) << used.errors;
+}
+
+/// A device that does not open is listed with the reason, and so are the others.
+TEST(Devices, ThatDoNotOpenAreListed) {
+    SETKA_NEED_DEVICE();
+    const Folder cache;
+    const std::vector<std::pair<std::string, std::string>> broken{{"POCL_EXTRA_BUILD_FLAGS", "-no-such-flag"},
+                                                                  {"POCL_CACHE_DIR", cache.path().string()}};
+    const Outcome outcome = run({"devices", "--json"}, broken);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.errors;
+    const json devices = json::parse(outcome.output)["devices"];
+    const auto closed = std::find_if(devices.begin(), devices.end(),
+                                     [](const json& device) { return device.contains("error"); });
+    if (closed == devices.end()) GTEST_SKIP() << "no device of a PoCL that follows POCL_EXTRA_BUILD_FLAGS";
+    EXPECT_THAT(std::string((*closed)["error"]), HasSubstr("compiling the kernels"));
+    EXPECT_FALSE(closed->contains("parity"));
+    EXPECT_THAT(run({"devices"}, broken).output, HasSubstr("CANNOT BE OPENED: compiling the kernels"));
 }
 
 TEST(Render, WritesAPictureOfTheRightSize) {
@@ -138,11 +188,10 @@ TEST(Build, PrintsWhatAGridIs) {
 TEST(Build, DigestDependsOnTheSceneAlone) {
     SETKA_NEED_DEVICE();
     const json digest = run_json({"build", "soup:3000"})["digest"];
-    const std::vector<std::vector<std::string>> variants{{"--work-group-size", "1"},
-                                                         {"--work-group-size", "256"},
-                                                         {"--primitives", "serial"},
-                                                         {"--primitives", "group"},
-                                                         {"--cell-tables", "binary-search"}};
+    const std::vector<std::vector<std::string>> variants{
+        {"--work-group-size", "1"},        {"--work-group-size", "256"}, {"--primitives", "auto"},
+        {"--primitives", "portable"},      {"--primitives", "serial"},   {"--primitives", "group"},
+        {"--cell-tables", "binary-search"}};
     for (const auto& variant : variants) {
         std::vector<std::string> arguments{"build", "soup:3000"};
         arguments.insert(arguments.end(), variant.begin(), variant.end());

@@ -4,6 +4,7 @@
 #include "backend/cuda/kernel_table.hpp"
 
 #include "grid.cu"
+#include "probe.cu"
 #include "reduce.cu"
 #include "scan.cu"
 #include "shade.cu"

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * How does host C++ spell the words of the dialect (src/device/dialect.h)? The device probe computes with it
+ * what a device has to answer, and unit tests run the same bodies under sanitizers. Every group has one
+ * work-item, as in PrimitiveShape::Serial, so that a barrier has nobody to wait for; `sk_host_group` is the
+ * number of the group that runs.
+ */
+#ifndef SETKA_PLATFORM_H
+#define SETKA_PLATFORM_H
+
+#include <bit>
+#include <cfloat>
+#include <cmath>
+#include <cstdint>
+
+#if defined(__FAST_MATH__)
+#error "compile the dialect without -ffast-math: its results have to be those of every device"
+#endif
+static_assert(FLT_EVAL_METHOD == 0, "float expressions must be rounded to float after each operation");
+
+#define SK_KERNEL static inline
+#define SK_FUNCTION static inline
+#define SK_GLOBAL
+#define SK_LOCAL
+#define SK_LOCAL_STORAGE
+#define SK_RESTRICT __restrict
+#define SK_BARRIER() ((void)0)
+
+typedef std::uint32_t sk_u32;
+typedef std::int32_t sk_i32;
+typedef std::uint64_t sk_u64;
+
+inline thread_local sk_u32 sk_host_group = 0;
+
+#define sk_global_id() (sk_host_group)
+#define sk_local_id() (sk_u32{0})
+#define sk_group_id() (sk_host_group)
+#define sk_local_size() (sk_u32{1})
+#define sk_float_bits(f) (std::bit_cast<sk_u32>(f))
+#define sk_bits_float(u) (std::bit_cast<float>(u))
+#define sk_sqrt(f) (std::sqrt(f))
+#define sk_floor(f) (std::floor(f))
+
+static inline sk_u32 sk_atomic_min(sk_u32* target, sk_u32 value) {
+    const sk_u32 before = *target;
+    *target = value < before ? value : before;
+    return before;
+}
+static inline sk_u32 sk_atomic_add(sk_u32* target, sk_u32 value) {
+    const sk_u32 before = *target;
+    *target = before + value;
+    return before;
+}
+
+#endif
