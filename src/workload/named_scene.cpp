@@ -14,10 +14,29 @@
 
 namespace setka::workload {
 
+namespace {
+
+[[nodiscard]] bool is_built_in(const std::string& name) {
+    return std::ranges::find(built_in_scenes(), name, &BuiltInScene::name) != built_in_scenes().end();
+}
+
+[[nodiscard]] std::filesystem::path snapshot_of(const std::filesystem::path& folder, const std::string& name) {
+    return folder / (name + ".snapshot");
+}
+
+}  // namespace
+
+bool NamedScene::exists(const std::filesystem::path& folder) const {
+#ifdef SETKA_HAS_IO
+    if (std::filesystem::exists(folder / name)) return true;
+#endif
+    return is_built_in(name.substr(0, name.find(':'))) || std::filesystem::exists(snapshot_of(folder, name));
+}
+
 std::optional<Scene> NamedScene::load(const std::filesystem::path& folder) const {
     const std::size_t colon = name.find(':');
     const std::string first = name.substr(0, colon);
-    if (std::ranges::find(built_in_scenes(), first, &BuiltInScene::name) != built_in_scenes().end()) {
+    if (is_built_in(first)) {
         std::uint64_t triangles = 0;
         const char* const end = name.data() + name.size();
         if (colon != std::string::npos && std::from_chars(name.data() + colon + 1, end, triangles).ptr != end)
@@ -27,7 +46,7 @@ std::optional<Scene> NamedScene::load(const std::filesystem::path& folder) const
 #ifdef SETKA_HAS_IO
     if (std::filesystem::exists(folder / name)) return io::load_scene(folder / name);
 #endif
-    const std::filesystem::path snapshot = folder / (name + ".snapshot");
+    const std::filesystem::path snapshot = snapshot_of(folder, name);
     if (std::filesystem::exists(snapshot)) return read_snapshot(snapshot);
     return std::nullopt;
 }
