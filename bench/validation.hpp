@@ -22,7 +22,7 @@ class Mismatch : public std::runtime_error {
 };
 
 /// The density that every scene is checked at, whatever is timed.
-inline constexpr float golden_density = workload::GoldenCase{}.density;
+inline const float golden_density = workload::GoldenCase{}.density;
 
 class Validator {
   public:
