@@ -7,14 +7,23 @@
 
 namespace setka::workload {
 
-Measurement measure(Queue& queue, std::uint32_t repeats, const std::function<void()>& work) {
-    if (repeats > 1) work();
-    queue.finish();
-    (void)queue.take_timings();  // what was measured before is not part of this
+Measurement measure(Queue& queue, std::uint32_t repeats, const std::function<void()>& work,
+                    const std::function<void()>& prepare) {
+    // What was enqueued before is not part of what comes next.
+    const auto make_ready = [&] {
+        if (prepare) prepare();
+        queue.finish();
+        (void)queue.take_timings();
+    };
+    if (repeats > 1) {
+        make_ready();
+        work();
+    }
 
     std::vector<double> wall_ms, device_ms;
     std::vector<std::vector<StageTime>> runs;
     for (std::uint32_t i = 0; i < repeats; ++i) {
+        make_ready();
         const Stopwatch watch;
         work();
         queue.finish();
@@ -24,7 +33,8 @@ Measurement measure(Queue& queue, std::uint32_t repeats, const std::function<voi
         device_ms.push_back(std::accumulate(runs.back().begin(), runs.back().end(), 0.0, add));
     }
 
-    Measurement result{repeats, median(wall_ms), median(device_ms), runs.front()};
+    Measurement result{repeats, median(wall_ms), median(device_ms), runs.front(), quartile_distance(wall_ms),
+                       quartile_distance(device_ms)};
     for (StageTime& stage : result.stages) {
         std::vector<double> times_ms;
         for (const auto& run : runs)
@@ -40,6 +50,12 @@ double median(std::vector<double> values) {
     std::ranges::sort(values);
     const std::size_t middle = values.size() / 2;
     return values.size() % 2 != 0 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
+}
+
+double quartile_distance(std::vector<double> values) {
+    if (values.empty()) return 0;
+    std::ranges::sort(values);
+    return values[3 * (values.size() - 1) / 4] - values[(values.size() - 1) / 4];
 }
 
 }  // namespace setka::workload

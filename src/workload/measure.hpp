@@ -27,13 +27,19 @@ struct Measurement {
     double wall_ms = 0;
     double device_ms = 0;           ///< sum over all stages
     std::vector<StageTime> stages;  ///< in order of first use
+    double wall_spread_ms = 0;      ///< between the quartiles: half of the repeats lie in a range this wide
+    double device_spread_ms = 0;
 };
 
 /// Runs `work` on the queue `repeats` times and waits after each. If more than once, a first run warms up and
-/// does not count.
-[[nodiscard]] Measurement measure(Queue& queue, std::uint32_t repeats, const std::function<void()>& work);
+/// does not count. `prepare` runs before each and is not measured: for work that destroys its input.
+[[nodiscard]] Measurement measure(Queue& queue, std::uint32_t repeats, const std::function<void()>& work,
+                                  const std::function<void()>& prepare = {});
 
 /// 0 for an empty list, the mean of the middle two for an even count.
 [[nodiscard]] double median(std::vector<double> values);
+
+/// From the value a quarter of the way up to the one three quarters up, in order; 0 for an empty list.
+[[nodiscard]] double quartile_distance(std::vector<double> values);
 
 }  // namespace setka::workload

@@ -15,9 +15,17 @@
 
 namespace setka::workload {
 
-#ifdef SETKA_HAS_IO
 namespace {
 
+[[nodiscard]] bool is_built_in(const std::string& name) {
+    return std::ranges::find(built_in_scenes(), name, &BuiltInScene::name) != built_in_scenes().end();
+}
+
+[[nodiscard]] std::filesystem::path snapshot_of(const std::filesystem::path& folder, const std::string& name) {
+    return folder / (name + ".snapshot");
+}
+
+#ifdef SETKA_HAS_IO
 /// The file itself, or the OBJ files of a folder in the order of their names.
 [[nodiscard]] std::vector<std::filesystem::path> files_of(const std::filesystem::path& path) {
     if (!std::filesystem::is_directory(path)) return {path};
@@ -27,14 +35,21 @@ namespace {
     std::ranges::sort(files);
     return files;
 }
+#endif
 
 }  // namespace
+
+bool NamedScene::exists(const std::filesystem::path& folder) const {
+#ifdef SETKA_HAS_IO
+    if (std::filesystem::exists(folder / name)) return true;
 #endif
+    return is_built_in(name.substr(0, name.find(':'))) || std::filesystem::exists(snapshot_of(folder, name));
+}
 
 std::optional<Scene> NamedScene::load(const std::filesystem::path& folder) const {
     const std::size_t colon = name.find(':');
     const std::string first = name.substr(0, colon);
-    if (std::ranges::find(built_in_scenes(), first, &BuiltInScene::name) != built_in_scenes().end()) {
+    if (is_built_in(first)) {
         std::uint64_t triangles = 0;
         const char* const end = name.data() + name.size();
         if (colon != std::string::npos && std::from_chars(name.data() + colon + 1, end, triangles).ptr != end)
@@ -44,7 +59,7 @@ std::optional<Scene> NamedScene::load(const std::filesystem::path& folder) const
 #ifdef SETKA_HAS_IO
     if (std::filesystem::exists(folder / name)) return io::load_scene(files_of(folder / name));
 #endif
-    const std::filesystem::path snapshot = folder / (name + ".snapshot");
+    const std::filesystem::path snapshot = snapshot_of(folder, name);
     if (std::filesystem::exists(snapshot)) return read_snapshot(snapshot);
     return std::nullopt;
 }

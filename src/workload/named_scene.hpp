@@ -15,6 +15,8 @@ namespace setka::workload {
 struct NamedScene {
     std::string name;
 
+    /// Whether load() would find something to read.
+    [[nodiscard]] bool exists(const std::filesystem::path& folder) const;
     /// Nothing if the name is no built-in scene and the folder has no such file. Throws what reading it throws.
     [[nodiscard]] std::optional<Scene> load(const std::filesystem::path& folder) const;
 };

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+/// Which benchmarks are there? Those of scenes and those of primitives, registered when scenes and devices
+/// are known.
+#pragma once
+
+#include <vector>
+
+#include "bench/fixture.hpp"
+#include "bench/options.hpp"
+#include "bench/scenes.hpp"
+#include "bench/target.hpp"
+#include "bench/validation.hpp"
+
+namespace setka::bench {
+
+/// What all benchmarks share. Their order, all of a fixture one after the other, lets each fixture be made
+/// once.
+struct Bench {
+    const Options& options;
+    std::vector<Target> targets;
+    std::vector<SceneCase> scenes;
+    Validator& validator;
+    SceneLoader loader;
+    FixtureSlot slot;
+};
+
+/// scan/ELEMENTS/TARGET, sort/…, reduce/…. The bench has to outlive the run.
+void register_primitives(Bench& bench);
+
+/// build/TARGET/SCENE, trace/KIND/STEP/DEVICE/SCENE, frame/TARGET/SCENE, by scene and then by device. Another
+/// tracer to compare with joins the targets of a scene here, under a name of its own in TARGET's place.
+void register_scenes(Bench& bench);
+
+}  // namespace setka::bench

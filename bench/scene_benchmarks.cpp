@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+/// How fast are grids built and rays traced? Build, trace by ray kind, query and step, and a frame of a
+/// dynamic scene.
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "bench/benchmarks.hpp"
+#include "bench/subject.hpp"
+#include "bench/timing.hpp"
+
+namespace setka::bench {
+
+namespace {
+
+/// Each stage reads its input once and writes its output once; the sum over the stages is derived in
+/// README.md.
+[[nodiscard]] std::uint64_t build_bytes(const Subject& subject) {
+    const SetkaGridHeader& header = subject.grid().header();
+    return 252ull * header.triangle_count + 28 * subject.row_count() + 28ull * header.reference_count +
+           8ull * header.cell_count;
+}
+
+/// Each ray is read and its result is written; tables and triangles may come from a cache.
+[[nodiscard]] std::uint64_t trace_bytes(const Subject& subject, const TraceCase& what) {
+    const std::uint64_t result = what.query == Query::Closest ? sizeof(Hit) : sizeof(std::uint32_t);
+    return (subject.rays().*what.rays).size() * (sizeof(Ray) + result);
+}
+
+void add_grid_counters(benchmark::State& state, const Subject& subject) {
+    const SetkaGridHeader& header = subject.grid().header();
+    state.counters["triangles"] = header.triangle_count;
+    state.counters["cells"] = header.cell_count;
+    state.counters["pairs"] = header.reference_count;
+    state.counters["table_bytes"] = static_cast<double>(subject.grid().size_bytes());
+}
+
+void time_build(benchmark::State& state, Subject& subject) {
+    const Work work{"Mtri/s", millions(subject.grid().header().triangle_count), build_bytes(subject)};
+    time_work(state, subject.queue(), work, [&] { subject.rebuild(); });
+    add_grid_counters(state, subject);
+}
+
+void time_trace(benchmark::State& state, Subject& subject, const TraceCase& what, GridStep step) {
+    const std::size_t count = (subject.rays().*what.rays).size();
+    if (count == 0) return state.SkipWithError("no primary ray hits the scene, so there are no such rays");
+    const Work work{"Mray/s", millions(count), trace_bytes(subject, what)};
+    time_work(state, subject.queue(), work, [&] { subject.trace(what, step); });
+    state.counters["rays"] = static_cast<double>(count);
+    if (what.query == Query::Any) return;
+    const MeanCost& cost = subject.cost(what, step);
+    state.counters["cells_per_ray"] = cost.cells;
+    state.counters["tests_per_ray"] = cost.tests;
+}
+
+/// The grid anew, then primary and shadow rays: what a moving scene needs, less the upload of what moved.
+void time_frame(benchmark::State& state, Subject& subject) {
+    const TraceCase& primary = trace_cases[0];
+    const TraceCase& shadow = trace_cases[1];
+    const Work work{"frame/s", 1,
+                    build_bytes(subject) + trace_bytes(subject, primary) + trace_bytes(subject, shadow)};
+    time_work(state, subject.queue(), work, [&] {
+        subject.rebuild();
+        subject.trace(primary, GridStep::Dda);
+        subject.trace(shadow, GridStep::Dda);
+    });
+    add_grid_counters(state, subject);
+    state.counters["rays"] =
+        static_cast<double>(subject.rays().primary.size() + subject.rays().shadow.size());
+}
+
+/// The benchmarks of one scene on one target.
+class Registrar {
+  public:
+    Registrar(Bench& bench, Target& target, const SceneCase& scene)
+        : bench_(bench), target_(target), scene_(scene) {}
+
+    void add(const std::string& name, const std::function<void(benchmark::State&, Subject&)>& body) const {
+        add_benchmark(name, [self = *this, body](benchmark::State& state) { body(state, self.subject()); });
+    }
+
+  private:
+    [[nodiscard]] Subject& subject() const {
+        return bench_.slot.get<Subject>(target_.name() + ' ' + scene_.to_string(), [this] {
+            return std::make_unique<Subject>(target_, scene_, bench_.loader.load(scene_), bench_.options,
+                                             bench_.validator);
+        });
+    }
+
+    Bench& bench_;
+    Target& target_;
+    const SceneCase& scene_;
+};
+
+void register_scene(Bench& bench, Target& target, const SceneCase& scene) {
+    const Registrar registrar(bench, target, scene);
+    const std::string of_target = '/' + target.name() + '/' + scene.to_string();
+    registrar.add("build" + of_target, time_build);
+    registrar.add("frame" + of_target, time_frame);
+    if (!target.is_first_of_device()) return;
+    const std::string of_device = '/' + target.info().id + '/' + scene.to_string();
+    for (const TraceCase& what : trace_cases)
+        for (const GridStep step : bench.options.steps)
+            registrar.add(std::string("trace/") + what.name + '/' + to_string(step) + of_device,
+                          [&what, step](benchmark::State& state, Subject& subject) {
+                              time_trace(state, subject, what, step);
+                          });
+}
+
+}  // namespace
+
+void register_scenes(Bench& bench) {
+    for (const SceneCase& scene : bench.scenes)
+        for (Target& target : bench.targets) register_scene(bench, target, scene);
+}
+
+}  // namespace setka::bench

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+/// What is built and traced? See the header.
+#include "bench/subject.hpp"
+
+#include <algorithm>
+
+#include "workload/fingerprint.hpp"
+
+namespace setka::bench {
+
+namespace {
+
+/// The queries that no fingerprint covers: each ray has to be occluded exactly if it has a closest hit.
+void check_queries(Queue& queue, const Grid& grid, const workload::StandardRays& rays, GridStep step,
+                   const std::string& who) {
+    const Tracer tracer({.step = step});
+    for (const Buffer<Ray>* const batch : {&rays.shadow, &rays.diffuse}) {
+        const auto device_hits = queue.make_buffer<Hit>(batch->size(), "hits");
+        const auto device_flags = queue.make_buffer<std::uint32_t>(batch->size(), "occlusion flags");
+        tracer.closest_hit(queue, grid, *batch, device_hits);
+        tracer.any_hit(queue, grid, *batch, device_flags);
+        const auto hits = queue.download(device_hits);
+        const auto flags = queue.download(device_flags);
+        const bool agree = std::ranges::equal(hits, flags, [](const Hit& hit, std::uint32_t flag) {
+            return flag == (hit.primitive != SETKA_NO_HIT ? 1u : 0u);
+        });
+        if (!agree)
+            throw Mismatch(who + ": closest hit and any hit disagree on the same rays; it is not timed");
+    }
+}
+
+}  // namespace
+
+Subject::Subject(Target& target, const SceneCase& name, const LoadedScene& loaded, const Options& options,
+                 Validator& validator)
+    : queue_(target.device().make_queue()), scene_(queue_, loaded.scene) {
+    for (const float density : {golden_density, options.density}) {
+        if (grid_ && density == golden_density) continue;
+        validate(name, loaded.view, options, density, target.name(), validator);
+    }
+    rays_ = workload::standard_rays(queue_, *grid_, loaded.view, options.size);
+    hits_ = queue_.make_buffer<Hit>(rays_.primary.size(), "hits");
+    flags_ = queue_.make_buffer<std::uint32_t>(rays_.primary.size(), "occlusion flags");
+}
+
+void Subject::validate(const SceneCase& name, const workload::StandardView& view, const Options& options,
+                       float density, const std::string& target, Validator& validator) {
+    builder_ = make_grid_builder({.density = density});
+    rebuild();
+    const Digest tables = grid_->digest(queue_);
+    const auto rays = workload::standard_rays(queue_, *grid_, view, workload::fingerprint_rays_size);
+    for (const GridStep step : options.steps) {
+        const std::string who = target + ", step " + to_string(step);
+        const workload::Results results = workload::take_results(queue_, scene_, *grid_, view, rays, step);
+        validator.check(name, density, workload::fingerprint(tables, results), who);
+        check_queries(queue_, *grid_, rays, step, name.to_string() + " on " + who);
+    }
+}
+
+void Subject::rebuild() {
+    grid_.reset();
+    GridPlan plan = builder_->plan(queue_, scene_);
+    row_count_ = plan.row_count();
+    grid_ = builder_->build(queue_, std::move(plan));
+}
+
+void Subject::trace(const TraceCase& what, GridStep step) {
+    const Tracer tracer({.step = step});
+    const Buffer<Ray>& batch = rays_.*what.rays;
+    if (what.query == Query::Closest) tracer.closest_hit(queue_, *grid_, batch, hits_);
+    else tracer.any_hit(queue_, *grid_, batch, flags_);
+}
+
+const MeanCost& Subject::cost(const TraceCase& what, GridStep step) {
+    const auto [entry, is_new] = costs_.try_emplace({what.name, step});
+    if (!is_new) return entry->second;
+    const Buffer<Ray>& batch = rays_.*what.rays;
+    const auto device_costs = queue_.make_buffer<TraceCost>(batch.size(), "costs");
+    Tracer({.step = step}).closest_hit_cost(queue_, *grid_, batch, device_costs);
+    MeanCost& mean = entry->second;
+    for (const TraceCost& cost : queue_.download(device_costs)) {
+        mean.cells += cost.steps;
+        mean.tests += cost.tests;
+    }
+    const auto count = static_cast<double>(std::max<std::size_t>(batch.size(), 1));
+    mean = {mean.cells / count, mean.tests / count};
+    return mean;
+}
+
+}  // namespace setka::bench

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+/// What is built and traced? A scene on a device with its grid and rays, whose results were checked.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "bench/fixture.hpp"
+#include "bench/options.hpp"
+#include "bench/scenes.hpp"
+#include "bench/target.hpp"
+#include "bench/validation.hpp"
+#include "setka/grid.hpp"
+#include "setka/tracer.hpp"
+#include "workload/standard_view.hpp"
+
+namespace setka::bench {
+
+enum class Query { Closest, Any };
+
+/// Which of the standard rays, and what is asked of them.
+struct TraceCase {
+    const char* name;
+    Buffer<Ray> workload::StandardRays::*rays;
+    Query query;
+};
+
+/// Three kinds of rays with the query that renderers make, then two of them with the other one.
+inline constexpr TraceCase trace_cases[] = {
+    {"primary", &workload::StandardRays::primary, Query::Closest},
+    {"shadow", &workload::StandardRays::shadow, Query::Any},
+    {"diffuse", &workload::StandardRays::diffuse, Query::Closest},
+    {"shadow-closest", &workload::StandardRays::shadow, Query::Closest},
+    {"diffuse-any", &workload::StandardRays::diffuse, Query::Any},
+};
+
+/// Means over a batch of rays.
+struct MeanCost {
+    double cells = 0;
+    double tests = 0;
+};
+
+class Subject final : public Fixture {
+  public:
+    /// Uploads the scene, and checks the fingerprint and the queries of every step that is asked for, at the
+    /// golden density and at that of the options. Throws Mismatch, or OutOfMemory.
+    Subject(Target& target, const SceneCase& name, const LoadedScene& loaded, const Options& options,
+            Validator& validator);
+
+    [[nodiscard]] Queue& queue() noexcept { return queue_; }
+    [[nodiscard]] const workload::StandardRays& rays() const noexcept { return rays_; }
+    [[nodiscard]] const Grid& grid() const noexcept { return *grid_; }
+    [[nodiscard]] std::uint64_t row_count() const noexcept { return row_count_; }
+
+    /// Replaces the grid by a new one, with only one of them in memory at a time.
+    void rebuild();
+    /// Enqueues a query of one kind of rays.
+    void trace(const TraceCase& what, GridStep step);
+    /// What closest hits of these rays cost; measured once.
+    [[nodiscard]] const MeanCost& cost(const TraceCase& what, GridStep step);
+
+  private:
+    void validate(const SceneCase& name, const workload::StandardView& view, const Options& options,
+                  float density, const std::string& target, Validator& validator);
+
+    Queue queue_;
+    DeviceScene scene_;
+    std::unique_ptr<GridBuilder> builder_;
+    std::uint64_t row_count_ = 0;
+    std::optional<Grid> grid_;
+    workload::StandardRays rays_;
+    Buffer<Hit> hits_;
+    Buffer<std::uint32_t> flags_;
+    std::map<std::pair<std::string, GridStep>, MeanCost> costs_;
+};
+
+}  // namespace setka::bench

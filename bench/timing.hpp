@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+/// How does a measurement become a row of Google Benchmark's report? As a median, whatever its counters would
+/// average.
+#pragma once
+
+#include <benchmark/benchmark.h>
+
+#include <cstdint>
+#include <functional>
+
+#include "setka/device.hpp"
+
+namespace setka::bench {
+
+/// What one run does.
+struct Work {
+    const char* rate;               ///< the throughput's unit: "Mray/s"
+    double amount = 0;              ///< how much of it one run does, such as millions of rays
+    std::uint64_t bytes_moved = 0;  ///< the least that has to be read and written; README.md has the formulas
+};
+
+/// Times `run` on the queue until Google Benchmark has enough, and reports medians: wall time, device time,
+/// each stage, throughput, and the scratch beyond what is alive in the end. `prepare` runs before each run
+/// and is not timed.
+void time_work(benchmark::State& state, Queue& queue, const Work& work, const std::function<void()>& run,
+               const std::function<void()>& prepare = {});
+
+[[nodiscard]] constexpr double millions(std::uint64_t count) noexcept {
+    return static_cast<double>(count) / 1e6;
+}
+
+/// Registers a benchmark that skips visibly, with the reason, where the device's memory does not suffice.
+void add_benchmark(const std::string& name, std::function<void(benchmark::State&)> body);
+
+}  // namespace setka::bench

@@ -1,0 +1,28 @@
+# Does the program say what is wrong with its arguments, and skip what a device cannot hold?
+include(${CMAKE_CURRENT_LIST_DIR}/run.cmake)
+write_golden(${FOLDER}/golden.txt)
+if(skipped)
+    return()
+endif()
+
+function(expect_refusal argument expression)
+    run(2 ${argument})
+    expect_match("the message for ${argument}" "${error}" "${expression}")
+endfunction()
+expect_refusal(--scenes=nothing "'nothing' is neither built in nor in the scene folder")
+expect_refusal(--scenes=spheres:2000@above "'above'; accepted: inside, outside")
+expect_refusal(--scenes "--scenes=VALUE")
+expect_refusal(--devices=opencl:99 "'opencl:99' is not here; accepted: ")
+expect_refusal(--size=0 "--size is '0'; accepted: a number from 1 to 16384")
+expect_refusal(--density=thick "--density is 'thick'; accepted: a number from 1e-06 to 1e\\+06")
+expect_refusal(--steps=dda,long "--steps is 'long'; accepted: dda, branch-free")
+expect_refusal(--elements=1 "--elements is '1'; accepted: a number from 2 to")
+expect_refusal(--golden=${FOLDER}/nowhere.txt "nowhere.txt: cannot be opened")
+expect_refusal(--benchmark_filter=no_such_benchmark "match")
+
+# 2^31 cells and more cannot be held: that is reported as the row of the benchmark, and is no failure.
+set(report ${FOLDER}/report.json)
+run(0 ${tiny} --scenes=spheres:2000 --density=1000000 --benchmark_filter=^build --benchmark_out=${report})
+file(READ ${report} json)
+string(JSON reason GET "${json}" benchmarks 0 error_message)
+expect_match("the reason" "${reason}" "density 1000000.* needs .* cells")
