@@ -81,6 +81,7 @@ TEST(BadInput, NoDevice) {
     const Folder folder;
     expect_one_clear_line(run({"build", "cube"}, environment), {"device"});
     expect_one_clear_line(run({"verify", "cube"}, environment), {"device"});
+    expect_one_clear_line(run({"compare", "cube"}, environment), {"no device was found"});
     expect_one_clear_line(run({"render", "cube", "-o", folder / "out.png"}, environment), {"device"});
     EXPECT_TRUE(folder.is_empty());
 }

@@ -77,6 +77,18 @@ const std::vector<Misuse> misuses{
     {"size_of_file", {"build", "no.obj", "--triangles", "9"}, {"--triangles 9"}},
     {"bad_scene_size", {"build", "torus:many"}, {"torus", "'many'"}},
     {"no_such_scene", {"build", "teapot"}, {"'teapot'", "neither a file nor a built-in scene", "showcase"}},
+    {"compare_nothing", {"compare"}, {"FILES"}},
+    {"compare_one", {"compare", "cube", "--devices", "opencl:0"}, {"--devices", "'opencl:0'", "opencl:0/serial,opencl:0/group"}},
+    {"compare_no_name", {"compare", "cube", "--devices", "opencl:0,"}, {"--devices", "''"}},
+    {"compare_only_shape", {"compare", "cube", "--devices", "opencl:0,/group"}, {"--devices", "'/group'"}},
+    {"compare_shape",
+     {"compare", "cube", "--devices", "opencl:0,opencl:0/fast"},
+     {"--devices", "'opencl:0/fast'", "library|portable|serial|group"}},
+    {"compare_size", {"compare", "cube", "--size", "4097"}, {"--size", "'4097'", "1 to 4096"}},
+    {"compare_image", {"compare", "cube", "--image-size", "9"}, {"--image-size", "'9'"}},
+    {"compare_step", {"compare", "cube", "--step", "all"}, {"--step", "'all'", "both|dda|branch-free"}},
+    {"compare_repeat", {"compare", "cube", "--repeat", "0"}, {"--repeat", "'0'"}},
+    {"compare_device", {"compare", "cube", "--device", "opencl:0"}, {"--device"}},
     {"two_built_in", {"build", "torus", "cube"}, {"'torus'", "cannot be mixed"}},
 };
 
@@ -84,7 +96,7 @@ INSTANTIATE_TEST_SUITE_P(Misuses, Usage, ::testing::ValuesIn(misuses),
                          [](const auto& test) { return test.param.name; });
 
 TEST(Help, IsThereForEverything) {
-    for (const char* command : {"devices", "render", "build", "trace", "verify", "scene"}) {
+    for (const char* command : {"devices", "render", "build", "trace", "verify", "compare", "scene"}) {
         const Outcome outcome = run({command, "--help"});
         EXPECT_EQ(outcome.exit_code, 0);
         EXPECT_THAT(outcome.output, HasSubstr("--help"));
