@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "backend/cuda/cuda_registry.hpp"
 
+#include <fstream>
+#include <string>
+
 #include "backend/cuda/cuda_device.hpp"
 #include "backend/cuda/kernel_table.hpp"
 
@@ -12,6 +15,16 @@ std::string version_text(int version) {
     return std::to_string(version / 1000) + "." + std::to_string(version % 1000 / 10);
 }
 
+/// The driver's own version, "580.95.05", which the runtime does not tell but Linux does; else an empty string.
+std::string driver_version() {
+    // "NVRM version: NVIDIA UNIX x86_64 Kernel Module  580.95.05  <date>"
+    std::ifstream file("/proc/driver/nvidia/version");
+    for (std::string word; file >> word;)
+        if (word.find_first_not_of("0123456789.") == std::string::npos && word.find('.') != std::string::npos)
+            return word;
+    return {};
+}
+
 DeviceInfo describe(int number, const cudaDeviceProp& properties, int driver, int runtime) {
     DeviceInfo info;
     info.id = "cuda:" + std::to_string(number);
@@ -21,7 +34,8 @@ DeviceInfo describe(int number, const cudaDeviceProp& properties, int driver, in
     info.vendor = "NVIDIA Corporation";
     info.platform = "CUDA " + version_text(runtime) + ", compute capability " + std::to_string(properties.major) + "." +
                     std::to_string(properties.minor);
-    info.driver = "CUDA " + version_text(driver);
+    const std::string version = driver_version();
+    info.driver = version + (version.empty() ? "CUDA " : ", CUDA ") + version_text(driver);
     info.compute_units = static_cast<std::uint32_t>(properties.multiProcessorCount);
     info.max_work_group_size = static_cast<std::uint32_t>(properties.maxThreadsPerBlock);
     info.memory_bytes = properties.totalGlobalMem;
