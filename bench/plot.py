@@ -87,7 +87,10 @@ def read_report(file: Path, step: str, results: Results) -> None:
                 continue
             panel = match["kind"] or "build"
             device = match["build_device"] or match["device"]
-            is_shown = match["step"] == step if match["kind"] else match["shape"] == shapes.setdefault(device, match["shape"])
+            if match["kind"]:
+                is_shown = match["step"] == step
+            else:
+                is_shown = match["shape"] == shapes.setdefault(device, match["shape"])
             if panel in PANELS and is_shown:
                 results.add(file, panel, match["scene"], labels[device], throughput(rows, PANELS[panel][1]))
     except (KeyError, TypeError, AttributeError) as error:
