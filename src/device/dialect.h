@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /**
  * Which words may a kernel body use? C99 as every backend's compiler and host C++ accept it, plus the words below, which
- * the platform.h of each folder translates. This file is the list; it fails the build of a platform that lacks one.
+ * the platform.h of each folder translates, and host_platform.h for the host. This file is the list; it fails the build
+ * of a platform that lacks one.
  *
  *   SK_KERNEL                a kernel entry point returning void
  *   SK_FUNCTION              a helper function, always inlined

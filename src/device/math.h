@@ -20,10 +20,10 @@ SK_FUNCTION sk_u32 sk_min_u32(sk_u32 a, sk_u32 b) { return b < a ? b : a; }
 SK_FUNCTION sk_u32 sk_max_u32(sk_u32 a, sk_u32 b) { return a < b ? b : a; }
 
 /**
- * a + 0: -0 becomes 0, all else stays. Written as a choice, because some compilers (Mesa's of 2022) drop an addition of 0 as if it
+ * a + 0: -0 becomes 0, all else stays. Written as a choice on its bits, because some compilers (Mesa's of 2022) drop an addition of 0 as if it
  * changed nothing.
  */
-SK_FUNCTION float sk_positive_zero(float a) { return a == 0.0f ? 0.0f : a; }
+SK_FUNCTION float sk_positive_zero(float a) { return (sk_float_bits(a) & 0x7fffffffu) == 0u ? 0.0f : a; }
 
 /** True for numbers, false for NaN and infinities. */
 SK_FUNCTION int sk_is_finite(float a) { return (sk_float_bits(a) & 0x7f800000u) != 0x7f800000u; }
