@@ -59,7 +59,6 @@ constexpr std::array<const char*, 16> header_words{
     "dims x",         "dims y",   "dims z",     "cell count", "reference count",   "triangle count",
     "instance count", "extent",   "reserved 0", "reserved 1"};
 static_assert(sizeof(SetkaGridHeader) == 4 * header_words.size());
-constexpr std::size_t reference_count_word = offsetof(SetkaGridHeader, reference_count) / 4;
 
 [[nodiscard]] std::string header_word(std::uint32_t word, std::size_t index) {
     const bool is_float =
