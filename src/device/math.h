@@ -19,6 +19,9 @@ SK_FUNCTION float sk_abs(float a) { return sk_bits_float(sk_float_bits(a) & 0x7f
 SK_FUNCTION sk_u32 sk_min_u32(sk_u32 a, sk_u32 b) { return b < a ? b : a; }
 SK_FUNCTION sk_u32 sk_max_u32(sk_u32 a, sk_u32 b) { return a < b ? b : a; }
 
+/** `a` with 0 for -0, so that no table and no hit ever holds a -0. By its bits: Mesa's compiler drops an addition of +0. */
+SK_FUNCTION float sk_plus_zero(float a) { return (sk_float_bits(a) & 0x7fffffffu) == 0u ? 0.0f : a; }
+
 /** True for numbers, false for NaN and infinities. */
 SK_FUNCTION int sk_is_finite(float a) { return (sk_float_bits(a) & 0x7f800000u) != 0x7f800000u; }
 
@@ -49,11 +52,11 @@ SK_FUNCTION float sk_largest(sk_vec3 a) { return sk_max(sk_max(sk_abs(a.x), sk_a
 /** Component 0, 1 or 2. */
 SK_FUNCTION float sk_component(sk_vec3 a, sk_u32 axis) { return axis == 0u ? a.x : axis == 1u ? a.y : a.z; }
 
-/** matrix (3 rows of 4) * (p, 1). Adding +0 turns -0 into 0, so that no table ever holds one. */
+/** matrix (3 rows of 4) * (p, 1), never -0. */
 SK_FUNCTION sk_vec3 sk_transform_point(SK_GLOBAL const float* m, sk_vec3 p) {
-    return sk_make3((((m[0] * p.x + m[1] * p.y) + m[2] * p.z) + m[3]) + 0.0f,
-                    (((m[4] * p.x + m[5] * p.y) + m[6] * p.z) + m[7]) + 0.0f,
-                    (((m[8] * p.x + m[9] * p.y) + m[10] * p.z) + m[11]) + 0.0f);
+    return sk_make3(sk_plus_zero(((m[0] * p.x + m[1] * p.y) + m[2] * p.z) + m[3]),
+                    sk_plus_zero(((m[4] * p.x + m[5] * p.y) + m[6] * p.z) + m[7]),
+                    sk_plus_zero(((m[8] * p.x + m[9] * p.y) + m[10] * p.z) + m[11]));
 }
 
 /** The index i with starts[i] <= value < starts[i + 1], for starts of count + 1 ascending numbers from 0. */

@@ -175,6 +175,28 @@ inline Instance& add(Scene& scene, Mesh mesh, const Material& material, const Ma
     return camera;
 }
 
+/// Everything that shading knows: smooth and flat, matte, mirror, tinted glass, point and directional lights. The
+/// large spheres have `rings` rings.
+[[nodiscard]] inline Scene everything(int rings = 16) {
+    Scene scene;
+    add(scene, quad({0, 0, 0}, {0, 0, 8}, {8, 0, 0}), matte({0.7f, 0.65f, 0.6f}));
+    scene.materials.back().reflectivity = 0.3f;
+    scene.materials.back().specular = {0.2f, 0.2f, 0.2f};
+    add(scene, sphere({-1.2f, 1, 0}, 1, rings), mirror());
+    scene.materials.back().specular = {0.9f, 0.8f, 0.6f};
+    add(scene, sphere({1.2f, 1, 0.6f}, 1, rings), glass(1.5f));
+    scene.materials.back().transmission = {0.8f, 0.95f, 0.9f};
+    scene.materials.back().specular = {0.5f, 0.5f, 0.5f};
+    add(scene, box({-0.5f, 0, 1.5f}, {0.3f, 0.8f, 2.2f}), matte({0.2f, 0.3f, 0.8f}));
+    add(scene, sphere({0, 0.5f, -2}, 0.5f, rings / 2), matte({0.8f, 0.2f, 0.2f}));
+    scene.materials.back().specular = {0.5f, 0.5f, 0.5f};
+    scene.point_lights.push_back({{3, 5, 4}, {0.8f, 0.7f, 0.6f}, 0});
+    scene.point_lights.push_back({{-3, 2, 2}, {0.3f, 0.4f, 0.6f}, 3});
+    scene.directional_lights.push_back({{-1, -3, -1}, {0.3f, 0.3f, 0.3f}});
+    scene.camera = look({0.5f, 2, 5.5f}, {0, 0.8f, 0}, 45);
+    return scene;
+}
+
 [[nodiscard]] inline bool near(const Float3& a, const Float3& b, float tolerance) {
     return std::fabs(a.x - b.x) <= tolerance && std::fabs(a.y - b.y) <= tolerance &&
            std::fabs(a.z - b.z) <= tolerance;

@@ -8,27 +8,6 @@
 namespace setka::render_test {
 namespace {
 
-/// Everything that shading knows: smooth and flat, matte, mirror, tinted glass, point and directional lights.
-Scene everything() {
-    Scene scene;
-    add(scene, quad({0, 0, 0}, {0, 0, 8}, {8, 0, 0}), matte({0.7f, 0.65f, 0.6f}));
-    scene.materials.back().reflectivity = 0.3f;
-    scene.materials.back().specular = {0.2f, 0.2f, 0.2f};
-    add(scene, sphere({-1.2f, 1, 0}, 1, 16), mirror());
-    scene.materials.back().specular = {0.9f, 0.8f, 0.6f};
-    add(scene, sphere({1.2f, 1, 0.6f}, 1, 16), glass(1.5f));
-    scene.materials.back().transmission = {0.8f, 0.95f, 0.9f};
-    scene.materials.back().specular = {0.5f, 0.5f, 0.5f};
-    add(scene, box({-0.5f, 0, 1.5f}, {0.3f, 0.8f, 2.2f}), matte({0.2f, 0.3f, 0.8f}));
-    add(scene, sphere({0, 0.5f, -2}, 0.5f, 8), matte({0.8f, 0.2f, 0.2f}));
-    scene.materials.back().specular = {0.5f, 0.5f, 0.5f};
-    scene.point_lights.push_back({{3, 5, 4}, {0.8f, 0.7f, 0.6f}, 0});
-    scene.point_lights.push_back({{-3, 2, 2}, {0.3f, 0.4f, 0.6f}, 3});
-    scene.directional_lights.push_back({{-1, -3, -1}, {0.3f, 0.3f, 0.3f}});
-    scene.camera = look({0.5f, 2, 5.5f}, {0, 0.8f, 0}, 45);
-    return scene;
-}
-
 class Same : public Render {
   protected:
     void SetUp() override {

@@ -35,7 +35,7 @@ typedef struct sk_span {
 } sk_span;
 
 /** The user's parameter of a working one, never -0. */
-SK_FUNCTION float sk_user_t(sk_working_ray r, float w) { return ((w + r.shift) * r.pre) * r.scale + 0.0f; }
+SK_FUNCTION float sk_user_t(sk_working_ray r, float w) { return sk_plus_zero(((w + r.shift) * r.pre) * r.scale); }
 
 /** Narrows `span` to where q + w * d lies in [-pad, size + pad]. */
 SK_FUNCTION sk_span sk_clip_axis(sk_span span, float q, float d, float size, float pad) {

@@ -92,8 +92,8 @@ SK_FUNCTION sk_best sk_test_triangle(sk_working_ray ray, SK_GLOBAL const float* 
             if (t >= ray.tmin && t <= ray.tmax && sk_is_finite(t) &&
                 (at < best.w || (at == best.w && number < best.triangle) || best.triangle == SETKA_NO_HIT)) {
                 r.w = at;
-                r.u = v / det + 0.0f;
-                r.v = w / det + 0.0f;
+                r.u = sk_plus_zero(v / det);
+                r.v = sk_plus_zero(w / det);
                 r.triangle = number;
             }
         }
