@@ -13,6 +13,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/settings.hpp"
+
 namespace setka::backend {
 
 /// Allocations of one queue that are not in use. They are reused in that queue's order only, so no command can still be using
@@ -22,6 +24,7 @@ class Pool {
   public:
     /// Sizes of pooled allocations: sixteenths of a power of two, so that similar requests share and little is wasted.
     [[nodiscard]] static std::uint64_t pooled_size(std::uint64_t size_bytes) {
+        if (!settings().pooling) return size_bytes;
         const std::uint64_t step = std::max<std::uint64_t>(256, std::bit_ceil(size_bytes) / 16);
         return (size_bytes + step - 1) / step * step;
     }
@@ -37,6 +40,7 @@ class Pool {
     }
 
     void give(std::uint64_t size_bytes, Handle handle) noexcept {
+        if (!settings().pooling) return;
         const std::scoped_lock lock(mutex_);
         try {
             free_.emplace(size_bytes, std::move(handle));

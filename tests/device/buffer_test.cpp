@@ -7,6 +7,7 @@
 #include "algo/scan.hpp"
 #include "setka/error.hpp"
 #include "support/devices.hpp"
+#include "support/sizes.hpp"
 
 namespace {
 
@@ -89,9 +90,10 @@ TEST_P(Buffers, WrappedMemoryIsWrittenInPlaceOrReadBack) {
 
 TEST_P(Buffers, UnalignedMemoryCanBeWrapped) {
     setka::Queue queue = device().make_queue();
-    std::vector<std::uint32_t> storage(1100, 1);
+    const std::size_t count = support::sized<std::size_t>(1001, 65);
+    std::vector<std::uint32_t> storage(count, 1);
     for (std::size_t first = 0; first < 20; ++first) {
-        const std::span<const std::uint32_t> part(storage.data() + first, 1001 - first);
+        const std::span<const std::uint32_t> part(storage.data() + first, count - first);
         const auto size = static_cast<std::uint32_t>(part.size());
         const auto offsets = queue.make_buffer<std::uint32_t>(size + 1, "offsets");
         EXPECT_EQ(setka::exclusive_scan(queue, queue.wrap(part, "part"), size, offsets), size);

@@ -13,10 +13,7 @@
 
 namespace {
 
-class Reduce : public support::DeviceAndTest<std::string> {
-  protected:
-    [[nodiscard]] setka::Device shaped_device() const { return device(support::launch_shape(other())); }
-};
+class Reduce : public support::ShapeTest {};
 SETKA_ON_EVERY_DEVICE_AND(Reduce, support::launch_shape_names());
 
 ::testing::AssertionResult reduces(setka::Queue& queue, const std::vector<float>& triangles) {
@@ -53,8 +50,8 @@ TEST_P(Reduce, EqualsTheStandardOne) {
 
 TEST_P(Reduce, FindsAnExtremeAnywhere) {
     setka::Queue queue = shaped_device().make_queue();
-    constexpr std::uint32_t size = 5003;
-    std::vector<float> triangles(9 * size, 1.0f);
+    const std::uint32_t size = support::sized(5003u, 103u);
+    std::vector<float> triangles(std::size_t{9} * size, 1.0f);
     for (std::size_t at :
          {std::size_t{0}, std::size_t{8}, triangles.size() / 2, triangles.size() - 9, triangles.size() - 1}) {
         for (const float value : {-3e38f, 3e38f, 1e-45f, -1e-45f, 0.0f}) {

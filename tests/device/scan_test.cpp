@@ -14,10 +14,7 @@
 
 namespace {
 
-class Scan : public support::DeviceAndTest<std::string> {
-  protected:
-    [[nodiscard]] setka::Device shaped_device() const { return device(support::launch_shape(other())); }
-};
+class Scan : public support::ShapeTest {};
 SETKA_ON_EVERY_DEVICE_AND(Scan, support::launch_shape_names());
 
 ::testing::AssertionResult scans(setka::Queue& queue, const std::vector<std::uint32_t>& counts) {
@@ -54,9 +51,10 @@ TEST_P(Scan, EqualsTheStandardOne) {
 
 TEST_P(Scan, LeavesItsInputAlone) {
     setka::Queue queue = shaped_device().make_queue();
-    const std::vector<std::uint32_t> counts(5000, 3);
+    const std::uint32_t size = support::sized(5000u, 500u);
+    const std::vector<std::uint32_t> counts(size, 3);
     const auto input = queue.upload(std::span(counts), "counts");
-    (void)setka::exclusive_scan(queue, input, 5000, queue.make_buffer<std::uint32_t>(5001, "offsets"));
+    (void)setka::exclusive_scan(queue, input, size, queue.make_buffer<std::uint32_t>(size + 1, "offsets"));
     EXPECT_EQ(queue.download(input), counts);
 }
 
@@ -65,7 +63,8 @@ TEST_P(Scan, TotalsUpToTheLimitAndNotBeyond) {
     constexpr std::uint32_t limit = 0x7fffffff;
     EXPECT_TRUE(scans(queue, {limit}));
     EXPECT_TRUE(scans(queue, {0, limit - 1, 0, 1, 0}));
-    std::vector<std::uint32_t> many(70000, limit / 70000);
+    const std::uint32_t size = support::sized(70000u, 700u);
+    std::vector<std::uint32_t> many(size, limit / size);
     EXPECT_TRUE(scans(queue, many));
     const auto refuses = [&](const std::vector<std::uint32_t>& counts) {
         EXPECT_THROW((void)scans(queue, counts), setka::Error);
@@ -75,8 +74,9 @@ TEST_P(Scan, TotalsUpToTheLimitAndNotBeyond) {
     refuses({0x80000000u});
     refuses({0xffffffffu, 0xffffffffu});
     refuses({0x80000000u, 0x80000000u});                    // 2^32: 0 in 32 bits
-    refuses(std::vector<std::uint32_t>(1 << 16, 1 << 16));  // the same from many
-    many.assign(70000, 0xffffffffu);
+    const std::uint32_t half = support::sized(1u << 16, 1u << 9);
+    refuses(std::vector<std::uint32_t>(half, (1u << 31) / half * 2));  // the same from many
+    many.assign(size, 0xffffffffu);
     refuses(many);
 }
 

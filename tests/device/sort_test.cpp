@@ -14,10 +14,7 @@
 
 namespace {
 
-class Sort : public support::DeviceAndTest<std::string> {
-  protected:
-    [[nodiscard]] setka::Device shaped_device() const { return device(support::launch_shape(other())); }
-};
+class Sort : public support::ShapeTest {};
 SETKA_ON_EVERY_DEVICE_AND(Sort, support::launch_shape_names());
 
 using Words = std::vector<std::uint32_t>;
@@ -57,7 +54,7 @@ TEST_P(Sort, EqualsTheStandardOne) {
     for (const std::uint32_t key_bits : {1u, 4u, 7u, 8u, 9u, 20u, 32u}) {
         const auto mask = static_cast<std::uint32_t>((std::uint64_t{1} << key_bits) - 1);
         for (const std::uint32_t size : support::boundary_sizes(shaped_device().options().work_group_size)) {
-            if (size > 70000 && key_bits != 9 && key_bits != 32) continue;  // time
+            if (size > support::sized(70000u, 100u) && key_bits != 9 && key_bits != 32) continue;  // time
             SCOPED_TRACE("size " + std::to_string(size) + ", key bits " + std::to_string(key_bits));
             Words keys(size);
             for (auto& key : keys) key = static_cast<std::uint32_t>(random.bits()) & mask;
@@ -68,7 +65,7 @@ TEST_P(Sort, EqualsTheStandardOne) {
 
 TEST_P(Sort, UnevenKeys) {
     setka::Queue queue = shaped_device().make_queue();
-    constexpr std::uint32_t size = 20011;
+    const std::uint32_t size = support::sized(20011u, 211u);
     support::Random random(3);
     Words values(size);
     for (auto& value : values) value = static_cast<std::uint32_t>(random.bits());  // not in order themselves
@@ -80,7 +77,7 @@ TEST_P(Sort, UnevenKeys) {
     with([](auto) { return 0u; });
     with([](auto) { return 0xfffffu; });
     with([](auto i) { return i; });
-    with([](auto i) { return size - i; });
+    with([&](auto i) { return size - i; });
     with([](auto i) { return i & 1 ? 0xfffffu : 0u; });
     with([&](auto) { return random.below(100) ? 77u : 0xffff0u; });
     with([](auto i) { return (i / 64) << 8; });

@@ -22,10 +22,11 @@ SETKA_ON_EVERY_DEVICE_AND(Digests, scenes);
 
 TEST_P(Digests, DoNotDependOnTheLaunch) {
     const setka::Scene scene = make(other());
+    const auto shapes = support::launch_shapes_of(std::get<0>(GetParam()));
     for (const float density : {0.5f, 4.0f, 16.0f}) {
         SCOPED_TRACE(density);
         std::string first;
-        for (const support::LaunchShape& shape : support::launch_shapes()) {
+        for (const support::LaunchShape& shape : shapes) {
             setka::Queue queue = device(shape.options).make_queue();
             const setka::DeviceScene device_scene(queue, scene);
             for (const auto tables : {setka::CellTables::RunBoundaries, setka::CellTables::BinarySearch}) {

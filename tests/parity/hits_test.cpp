@@ -37,9 +37,10 @@ TEST_P(Hits, OfBruteForceEqualTheOracles) {
     const oracle::World world = oracle::make_world(host_scene);
     const auto rays = support::adversarial_rays(world, 6000, 41);
     const auto expected = oracle::closest_hits(world, rays);
-    for (const char* shape : {"defaults", "Serial_1", "Group_256"}) {
-        SCOPED_TRACE(shape);
-        setka::Queue queue = device(support::launch_shape(shape)).make_queue();
+    for (const support::LaunchShape& shape :
+         support::launch_shapes_of(std::get<0>(GetParam()), {"defaults", "Serial_1", "Group_256"})) {
+        SCOPED_TRACE(shape.name);
+        setka::Queue queue = device(shape.options).make_queue();
         const auto brute = setka::BruteForce::build(queue, setka::DeviceScene(queue, host_scene));
         EXPECT_TRUE(support::same_hits(rays, expected, setka::Tracer().closest_hit(queue, brute, rays)));
         EXPECT_TRUE(support::same_occlusion(rays, expected, setka::Tracer().any_hit(queue, brute, rays)));

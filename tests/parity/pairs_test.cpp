@@ -82,7 +82,7 @@ TEST_P(GridPairs, HaveTheSameTablesAndHits) {
 
 const std::map<std::string, std::function<setka::Scene()>>& picture_scenes() {
     static const std::map<std::string, std::function<setka::Scene()>> scenes{
-        {"mirror_and_glass", support::mirror_and_glass},
+        {"mirror_and_glass", [] { return support::mirror_and_glass(); }},
         {"showcase", [] { return setka::make_scene("showcase"); }},
         {"spheres", [] { return setka::make_scene("spheres", 5000); }}};
     return scenes;

@@ -28,13 +28,14 @@ SETKA_ON_EVERY_DEVICE_AND(Plan, scenes);
 
 TEST_P(Plan, IsExact) {
     const setka::Scene scene = make(other());
-    for (const char* shape : {"defaults", "Serial_64", "Group_64", "Group_256", "Serial_1"}) {
-        const Device opened = device(support::launch_shape(shape));
+    for (const support::LaunchShape& shape : support::launch_shapes_of(
+             std::get<0>(GetParam()), {"defaults", "Serial_64", "Group_64", "Group_256", "Serial_1"})) {
+        const Device opened = device(shape.options);
         setka::Queue queue = opened.make_queue();
         const setka::DeviceScene device_scene(queue, scene);
         for (const float density : {0.5f, 4.0f, 16.0f})
             for (const auto tables : {setka::CellTables::RunBoundaries, setka::CellTables::BinarySearch}) {
-                SCOPED_TRACE(std::string(shape) + ", density " + std::to_string(density));
+                SCOPED_TRACE(shape.name + ", density " + std::to_string(density));
                 const std::uint64_t before = opened.memory_in_use_bytes();
                 opened.reset_peak_memory();
                 const auto builder = setka::make_grid_builder({.density = density, .cell_tables = tables});

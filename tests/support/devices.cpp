@@ -9,6 +9,8 @@
 #include <sstream>
 #include <tuple>
 
+#include "setka/error.hpp"
+
 namespace support {
 
 namespace {
@@ -74,11 +76,25 @@ void DeviceTest::require_device(const std::string& id) {
 
 setka::Device open_once(const std::string& id, const setka::DeviceOptions& options) {
     using Key = std::tuple<std::string, std::uint32_t, setka::PrimitiveShape, std::uint64_t>;
-    static std::map<Key, setka::Device> opened;
+    // Never destroyed: at exit a driver's own globals may be gone already (Oclgrind's are).
+    static auto& opened = *new std::map<Key, setka::Device>;
     const Key key{id, options.work_group_size, options.primitives, options.memory_budget_bytes};
     auto found = opened.find(key);
     if (found == opened.end()) found = opened.emplace(key, setka::Device::open(id, options)).first;
     return found->second;
+}
+
+std::string obstacle(const std::string& id, const setka::DeviceOptions& options) {
+    try {
+        (void)open_once(id, options);
+        return "";
+    } catch (const setka::Error& error) {
+        const setka::Device device = open_once(id);
+        const std::uint32_t usual = device.info().type == setka::DeviceType::Cpu ? 64 : 128;
+        if (error.category() != setka::ErrorCategory::InvalidArgument || device.options().work_group_size >= usual)
+            throw;
+        return error.what();
+    }
 }
 
 }  // namespace support

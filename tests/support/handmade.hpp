@@ -127,19 +127,20 @@ inline Instance& add(Scene& scene, Mesh mesh, const Material& material, const Ma
     return camera;
 }
 
-/// Everything that shading knows: smooth and flat, matte, mirror, tinted glass, point and directional lights.
-[[nodiscard]] inline Scene mirror_and_glass() {
+/// Everything that shading knows: smooth and flat, matte, mirror, tinted glass, point and directional lights. The large
+/// spheres have `rings` rings.
+[[nodiscard]] inline Scene mirror_and_glass(int rings = 16) {
     Scene scene;
     add(scene, quad({0, 0, 0}, {0, 0, 8}, {8, 0, 0}), matte({0.7f, 0.65f, 0.6f}));
     scene.materials.back().reflectivity = 0.3f;
     scene.materials.back().specular = {0.2f, 0.2f, 0.2f};
-    add(scene, sphere({-1.2f, 1, 0}, 1, 16), mirror());
+    add(scene, sphere({-1.2f, 1, 0}, 1, rings), mirror());
     scene.materials.back().specular = {0.9f, 0.8f, 0.6f};
-    add(scene, sphere({1.2f, 1, 0.6f}, 1, 16), glass(1.5f));
+    add(scene, sphere({1.2f, 1, 0.6f}, 1, rings), glass(1.5f));
     scene.materials.back().transmission = {0.8f, 0.95f, 0.9f};
     scene.materials.back().specular = {0.5f, 0.5f, 0.5f};
     add(scene, box({-0.5f, 0, 1.5f}, {0.3f, 0.8f, 2.2f}), matte({0.2f, 0.3f, 0.8f}));
-    add(scene, sphere({0, 0.5f, -2}, 0.5f, 8), matte({0.8f, 0.2f, 0.2f}));
+    add(scene, sphere({0, 0.5f, -2}, 0.5f, rings / 2), matte({0.8f, 0.2f, 0.2f}));
     scene.materials.back().specular = {0.5f, 0.5f, 0.5f};
     scene.point_lights.push_back({{3, 5, 4}, {0.8f, 0.7f, 0.6f}, 0});
     scene.point_lights.push_back({{-3, 2, 2}, {0.3f, 0.4f, 0.6f}, 3});
