@@ -11,9 +11,9 @@
 #include <exception>
 #include <stdexcept>
 
-#include "support/handmade.hpp"
 #include "setka/setka.hpp"
 #include "support/devices.hpp"
+#include "support/handmade.hpp"
 #include "support/rays.hpp"
 #include "support/scenes.hpp"
 #include "support/shapes.hpp"
