@@ -126,7 +126,7 @@ const Case cases[] = {
      "-cl-unsafe-math-optimizations",
      {"(a + c) - a", "4097 * d - (4097 * d - d)", "accurate a * b - c * d"}},
     {"no_nan", "-cl-finite-math-only", {"comparisons of a and b"}},
-    {"no_negative_zero", "-cl-no-signed-zeros", {"4097 * d - (4097 * d - d)", "b * d without -0"}},
+    {"no_negative_zero", "-cl-no-signed-zeros", {"4097 * d - (4097 * d - d)", "low end of edge (a, b) - (c, d)"}},
 };
 INSTANTIATE_TEST_SUITE_P(Pocl, RelaxedDriver, ::testing::ValuesIn(cases),
                          [](const auto& test) { return test.param.name; });

@@ -137,7 +137,10 @@ TEST(StageClock, AsksToBeCollected) {
 /// A device that only counts bytes.
 class CountingDevice final : public Device {
   public:
-    explicit CountingDevice(std::uint64_t budget_bytes) { options_.memory_budget_bytes = budget_bytes; }
+    explicit CountingDevice(std::uint64_t budget_bytes) {
+        options_.memory_budget_bytes = budget_bytes;
+        set_parity({});  // the budget holds from then on
+    }
     [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
     [[nodiscard]] const DeviceOptions& options() const noexcept override { return options_; }
     [[nodiscard]] std::shared_ptr<Queue> make_queue() override { return nullptr; }
