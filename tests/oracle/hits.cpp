@@ -60,6 +60,21 @@ float accurate(float a, float b, float c, float d) {
 
 bool mixed_signs(float a, float b, float c) { return (a < 0 || b < 0 || c < 0) && (a > 0 || b > 0 || c > 0); }
 
+/// 1 if the ray, moved by (e, e * e) for an infinitely small e, has the triangle's three edges on its left, -1 on its right, else 0:
+/// signs of U, of its change along x, of its change along y, the first that is not 0.
+int sides(float U, float V, float W, const float (&x)[3], const float (&y)[3]) {
+    const auto sign = [](float edge, float along_x, float along_y) {
+        for (const float value : {edge, along_x, along_y})
+            if (value != 0) return value > 0 ? 1 : -1;
+        return 0;
+    };
+    // Differences of floats have the exact sign, subnormal ones too.
+    const int u = sign(U, y[2] - y[1], x[1] - x[2]);
+    const int v = sign(V, y[0] - y[2], x[2] - x[0]);
+    const int w = sign(W, y[1] - y[0], x[0] - x[1]);
+    return u == v && v == w ? u : 0;
+}
+
 struct Clip {
     bool misses = false;
     float w0 = 0, w1 = 0;
@@ -171,9 +186,8 @@ Candidate test(const WorkingRay& ray, const WorldTriangle& triangle) {
     U = accurate(x[2], y[1], y[2], x[1]);
     V = accurate(x[0], y[2], y[0], x[2]);
     W = accurate(x[1], y[0], y[1], x[0]);
-    if (mixed_signs(U, V, W)) return {};
+    if (sides(U, V, W, x, y) == 0) return {};
     const float det = (U + V) + W;
-    if (det == 0) return {};
     const float w = ((U * z[0] + V * z[1]) + W * z[2]) / det;
     const float t = ray.user_t(w);
     if (!(t >= ray.tmin && t <= ray.tmax && std::isfinite(t))) return {};

@@ -61,6 +61,18 @@ SK_FUNCTION int sk_mixed_signs(float u, float v, float w) {
 }
 
 /**
+ * The side of the edge from a to b on which the ray passes, -1 or 1; `edge` has the exact sign of its edge function. A ray that meets
+ * the edge's line is treated as if it were moved by an infinitely small step along x and one infinitely smaller along y
+ * (Edelsbrunner & Muecke 1990), so that each of two triangles that share an edge answers for the same moved ray. 0 only if a
+ * and b coincide.
+ */
+SK_FUNCTION int sk_side(float edge, float xa, float ya, float xb, float yb) {
+    if (edge != 0.0f) return edge > 0.0f ? 1 : -1;
+    if (ya != yb) return yb > ya ? 1 : -1;
+    return xa > xb ? 1 : xa < xb ? -1 : 0;
+}
+
+/**
  * The best of `best` and the hit of triangle `number`, whose vertex k has the components vertices[3 * stride * k],
  * vertices[3 * stride * k + stride], …: stride 1 for packed triangles, more where triangles lie side by side.
  */
@@ -85,8 +97,9 @@ SK_FUNCTION sk_best sk_test_triangle(sk_working_ray ray, SK_GLOBAL const float* 
         u = sk_accurate_difference(p2, q1, q2, p1);
         v = sk_accurate_difference(p0, q2, q0, p2);
         w = sk_accurate_difference(p1, q0, q1, p0);
-        const float det = (u + v) + w;
-        if (!sk_mixed_signs(u, v, w) && det != 0.0f) {
+        const int side = sk_side(u, p1, q1, p2, q2);
+        if (side != 0 && side == sk_side(v, p2, q2, p0, q0) && side == sk_side(w, p0, q0, p1, q1)) {
+            const float det = (u + v) + w;
             const float at = ((u * (ray.sz * a0) + v * (ray.sz * a1)) + w * (ray.sz * a2)) / det;
             const float t = sk_user_t(ray, at);
             if (t >= ray.tmin && t <= ray.tmax && sk_is_finite(t) &&
