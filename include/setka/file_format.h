@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /**
- * What is in a file of a saved structure? The format, version 1, in C99, for programs that read such files without the library.
+ * What is in a file of a saved structure? The format, version 1, in C99, for programs that read such files without the
+ * library.
  *
  * Everything is little-endian; floats are IEEE 754 single precision. A file is
  *
@@ -8,12 +9,12 @@
  *     SetkaFileSection[section_count]        64 bytes each
  *     the sections' bytes                    in the order of the table
  *
- * Each section starts at the first multiple of 64 bytes at or after the end of what precedes it; the bytes between are 0; the file
- * ends with the last byte of the last section. So every byte is determined by the structure, and equal structures give equal files.
- * A reader refuses anything else.
+ * Each section starts at the first multiple of 64 bytes at or after the end of what precedes it; the bytes between are
+ * 0; the file ends with the last byte of the last section. So every byte is determined by the structure, and equal
+ * structures give equal files. A reader refuses anything else.
  *
- * A uniform grid (SETKA_FILE_UNIFORM_GRID) has these sections, all of them, in this order. What the tables mean is said at
- * SetkaGridHeader in layout.h.
+ * A uniform grid (SETKA_FILE_UNIFORM_GRID) has these sections, all of them, in this order. What the tables mean is said
+ * at SetkaGridHeader in layout.h.
  *
  *     "header"           SetkaGridHeader                           1
  *     "bounds"           SetkaBounds, around all triangles         1
@@ -25,9 +26,9 @@
  *                        then triangle_count
  *     "instances"        SetkaInstance                             instance_count
  *
- * Triangle i of the scene belongs to the last instance whose start is not above i; its number in the instance's mesh is i minus that start.
- * The digest is XXH3-128 (seed 0) over the sections header, offsets, counts and references one behind the other, without the padding.
- * Checksums are XXH3-64 (seed 0).
+ * Triangle i of the scene belongs to the last instance whose start is not above i; its number in the instance's mesh is
+ * i minus that start. The digest is XXH3-128 (seed 0) over the sections header, offsets, counts and references one behind
+ * the other, without the padding. Checksums are XXH3-64 (seed 0).
  *
  * A change of anything above is another version.
  */
@@ -58,7 +59,7 @@ typedef struct SetkaFileHeader {
     uint64_t digest_high;   /**< of the tables, as above */
     uint64_t digest_low;
     uint64_t reserved_too;  /**< 0 */
-    uint64_t checksum;      /**< of the 56 bytes before it and of the section table behind it, one behind the other */
+    uint64_t checksum;      /**< of the 56 bytes before it, then the section table */
 } SetkaFileHeader;
 
 /** Where a section lies. 64 bytes. */

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Can rays be traced through these tables? Header first, then sizes, then contents: each stage relies on the one before.
+/// Can rays be traced through these tables? Header first, then sizes, then contents: each stage relies on the
+/// one before.
 #include "accel/grid_violations.hpp"
 
 #include <algorithm>
@@ -40,7 +41,9 @@ std::string sentence(const Parts&... parts) {
 }
 
 /// 0 and -0 differ, a NaN is itself.
-bool same_bits(float a, float b) { return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b); }
+bool same_bits(float a, float b) {
+    return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
+}
 
 /// One invariant, of which only the first violation is told.
 class Invariant {
@@ -65,36 +68,41 @@ void require(std::vector<std::string>& list, bool holds, const Parts&... parts) 
 
 void check_counts(const ::SetkaGridHeader& h, std::vector<std::string>& list) {
     for (int axis = 0; axis < 3; ++axis)
-        require(list, h.dims[axis] >= 1 && h.dims[axis] <= most_cells_per_axis, "header: dims[", axis, "] is ", h.dims[axis],
-                "; 1 to ", most_cells_per_axis, " are accepted");
+        require(list, h.dims[axis] >= 1 && h.dims[axis] <= most_cells_per_axis, "header: dims[", axis,
+                "] is ", h.dims[axis], "; 1 to ", most_cells_per_axis, " are accepted");
     if (!list.empty()) return;
     const std::uint64_t cells = std::uint64_t(h.dims[0]) * h.dims[1] * h.dims[2];
-    require(list, h.cell_count == cells, "header: cell_count is ", h.cell_count, "; the product of dims is ", cells);
-    require(list, h.cell_count <= most_entries, "header: cell_count is ", h.cell_count, "; up to ", most_entries, " are accepted");
-    require(list, h.reference_count <= most_entries, "header: reference_count is ", h.reference_count, "; up to ", most_entries,
-            " are accepted");
-    require(list, h.triangle_count >= 1 && h.triangle_count <= most_triangles, "header: triangle_count is ", h.triangle_count,
-            "; 1 to ", most_triangles, " are accepted");
-    require(list, h.instance_count >= 1 && h.instance_count <= most_entries, "header: instance_count is ", h.instance_count,
-            "; 1 to ", most_entries, " are accepted");
-    require(list, h.reserved[0] == 0 && h.reserved[1] == 0, "header: reserved is ", h.reserved[0], ", ", h.reserved[1],
-            "; 0, 0 is accepted");
+    require(list, h.cell_count == cells, "header: cell_count is ", h.cell_count, "; the product of dims is ",
+            cells);
+    require(list, h.cell_count <= most_entries, "header: cell_count is ", h.cell_count, "; up to ",
+            most_entries, " are accepted");
+    require(list, h.reference_count <= most_entries, "header: reference_count is ", h.reference_count,
+            "; up to ", most_entries, " are accepted");
+    require(list, h.triangle_count >= 1 && h.triangle_count <= most_triangles, "header: triangle_count is ",
+            h.triangle_count, "; 1 to ", most_triangles, " are accepted");
+    require(list, h.instance_count >= 1 && h.instance_count <= most_entries, "header: instance_count is ",
+            h.instance_count, "; 1 to ", most_entries, " are accepted");
+    require(list, h.reserved[0] == 0 && h.reserved[1] == 0, "header: reserved is ", h.reserved[0], ", ",
+            h.reserved[1], "; 0, 0 is accepted");
 }
 
 void check_numbers(const ::SetkaGridHeader& h, std::vector<std::string>& list) {
     for (int axis = 0; axis < 3; ++axis)
-        require(list, std::isfinite(h.origin[axis]), "header: origin[", axis, "] is ", h.origin[axis], "; it has to be finite");
-    require(list, h.cell_size >= least_cell_size && h.cell_size <= largest_extent, "header: cell_size is ", h.cell_size, "; ",
-            least_cell_size, " to ", largest_extent, " are accepted");
-    require(list, same_bits(h.inverse_cell_size, 1.0f / h.cell_size), "header: inverse_cell_size is ", h.inverse_cell_size,
-            "; 1 / cell_size is ", 1.0f / h.cell_size);
+        require(list, std::isfinite(h.origin[axis]), "header: origin[", axis, "] is ", h.origin[axis],
+                "; it has to be finite");
+    require(list, h.cell_size >= least_cell_size && h.cell_size <= largest_extent, "header: cell_size is ",
+            h.cell_size, "; ", least_cell_size, " to ", largest_extent, " are accepted");
+    require(list, same_bits(h.inverse_cell_size, 1.0f / h.cell_size), "header: inverse_cell_size is ",
+            h.inverse_cell_size, "; 1 / cell_size is ", 1.0f / h.cell_size);
     const float tolerance = static_cast<float>(*std::ranges::max_element(h.dims)) * 0x1p-17f;
-    require(list, same_bits(h.tolerance, tolerance), "header: tolerance is ", h.tolerance, "; max(dims) * 2^-17 is ", tolerance);
-    require(list, h.extent >= 0 && h.extent <= largest_extent, "header: extent is ", h.extent, "; 0 to ", largest_extent,
-            " are accepted");
+    require(list, same_bits(h.tolerance, tolerance), "header: tolerance is ", h.tolerance,
+            "; max(dims) * 2^-17 is ", tolerance);
+    require(list, h.extent >= 0 && h.extent <= largest_extent, "header: extent is ", h.extent, "; 0 to ",
+            largest_extent, " are accepted");
 }
 
-void check_size(std::vector<std::string>& list, const char* table, std::uint64_t size, std::uint64_t needed, const char* why) {
+void check_size(std::vector<std::string>& list, const char* table, std::uint64_t size, std::uint64_t needed,
+                const char* why) {
     require(list, size == needed, table, " has ", size, " elements; ", why, " asks for ", needed);
 }
 
@@ -103,8 +111,10 @@ void check_sizes(const GridTables& tables, std::vector<std::string>& list) {
     check_size(list, "offsets", tables.offsets.size(), h.cell_count, "cell_count");
     check_size(list, "counts", tables.counts.size(), h.cell_count, "cell_count");
     check_size(list, "references", tables.references.size(), h.reference_count, "reference_count");
-    check_size(list, "triangles", tables.triangles.size(), 9 * std::uint64_t(h.triangle_count), "9 * triangle_count");
-    check_size(list, "instance starts", tables.instance_starts.size(), std::uint64_t(h.instance_count) + 1, "instance_count + 1");
+    check_size(list, "triangles", tables.triangles.size(), 9 * std::uint64_t(h.triangle_count),
+               "9 * triangle_count");
+    check_size(list, "instance starts", tables.instance_starts.size(), std::uint64_t(h.instance_count) + 1,
+               "instance_count + 1");
     check_size(list, "instances", tables.instances.size(), h.instance_count, "instance_count");
 }
 
@@ -116,30 +126,34 @@ Bounds check_triangles(std::span<const float> triangles, std::vector<std::string
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         const float value = triangles[i];
         const std::size_t axis = i % 3;
-        if (!std::isfinite(value)) infinite.violated("triangle ", i / 9, " has a coordinate that is not finite: ", value);
-        if (same_bits(value, -0.0f)) negative_zero.violated("triangle ", i / 9, " has a coordinate that is -0; 0 is accepted");
+        if (!std::isfinite(value))
+            infinite.violated("triangle ", i / 9, " has a coordinate that is not finite: ", value);
+        if (same_bits(value, -0.0f))
+            negative_zero.violated("triangle ", i / 9, " has a coordinate that is -0; 0 is accepted");
         box.lower[axis] = std::min(box.lower[axis], value);
         box.upper[axis] = std::max(box.upper[axis], value);
     }
     return box;
 }
 
-/// The box is the triangles', and the grid's cells are laid out in it: else a walk could leave the grid or never end.
+/// The box is the triangles', and the grid's cells are laid out in it: else a walk could leave the grid or
+/// never end.
 void check_box(const GridTables& tables, const Bounds& box, std::vector<std::string>& list) {
     const ::SetkaGridHeader& h = tables.header;
     for (int axis = 0; axis < 3; ++axis) {
         const float lower = tables.bounds.lower[axis], upper = tables.bounds.upper[axis];
-        require(list, same_bits(lower, box.lower[axis]), "bounds: lower[", axis, "] is ", lower, "; the triangles' smallest is ",
-                box.lower[axis]);
-        require(list, same_bits(upper, box.upper[axis]), "bounds: upper[", axis, "] is ", upper, "; the triangles' largest is ",
-                box.upper[axis]);
-        require(list, same_bits(h.origin[axis], lower), "header: origin[", axis, "] is ", h.origin[axis], "; bounds.lower is ",
-                lower);
+        require(list, same_bits(lower, box.lower[axis]), "bounds: lower[", axis, "] is ", lower,
+                "; the triangles' smallest is ", box.lower[axis]);
+        require(list, same_bits(upper, box.upper[axis]), "bounds: upper[", axis, "] is ", upper,
+                "; the triangles' largest is ", box.upper[axis]);
+        require(list, same_bits(h.origin[axis], lower), "header: origin[", axis, "] is ", h.origin[axis],
+                "; bounds.lower is ", lower);
         // Products of a float and 13 bits are exact in double.
         const double side = double(upper) - double(lower), size = h.cell_size;
         const std::uint32_t dim = h.dims[axis];
-        require(list, (dim + 1.0) * size >= side && (dim == 1 || (dim - 1.0) * size < side), "header: dims[", axis, "] is ", dim,
-                ", but ", dim, " cells of ", h.cell_size, " do not just cover the bounds' ", static_cast<float>(side));
+        require(list, (dim + 1.0) * size >= side && (dim == 1 || (dim - 1.0) * size < side), "header: dims[",
+                axis, "] is ", dim, ", but ", dim, " cells of ", h.cell_size,
+                " do not just cover the bounds' ", static_cast<float>(side));
     }
     require(list, same_bits(h.extent, extent_of(tables.bounds)), "header: extent is ", h.extent,
             "; the longest side of the bounds is ", extent_of(tables.bounds));
@@ -149,15 +163,16 @@ void check_instances(const GridTables& tables, std::vector<std::string>& list) {
     const auto starts = tables.instance_starts;
     const auto instances = tables.instances;
     require(list, starts.front() == 0, "instance starts: the first is ", starts.front(), "; 0 is accepted");
-    require(list, starts.back() == tables.header.triangle_count, "instance starts: the last is ", starts.back(),
-            "; triangle_count is ", tables.header.triangle_count);
+    require(list, starts.back() == tables.header.triangle_count, "instance starts: the last is ",
+            starts.back(), "; triangle_count is ", tables.header.triangle_count);
     Invariant descending(list), other_start(list), infinite(list);
     for (std::size_t i = 0; i < instances.size(); ++i) {
         if (starts[i + 1] < starts[i])
-            descending.violated("instance starts: ", starts[i + 1], " follows ", starts[i], " at instance ", i + 1,
-                           "; they have to ascend");
+            descending.violated("instance starts: ", starts[i + 1], " follows ", starts[i], " at instance ",
+                                i + 1, "; they have to ascend");
         if (instances[i].first_triangle != starts[i])
-            other_start.violated("instance ", i, ": first_triangle is ", instances[i].first_triangle, "; its start is ", starts[i]);
+            other_start.violated("instance ", i, ": first_triangle is ", instances[i].first_triangle,
+                                 "; its start is ", starts[i]);
         if (!std::ranges::all_of(instances[i].matrix, [](float value) { return std::isfinite(value); }))
             infinite.violated("instance ", i, ": its matrix is not finite");
     }
@@ -172,16 +187,20 @@ bool check_cells(const GridTables& tables, std::vector<std::string>& list) {
         const std::int32_t offset = tables.offsets[cell];
         const std::uint32_t count = tables.counts[cell];
         if ((offset == -1) != (count == 0)) {
-            half_empty.violated("cell ", cell, " has offset ", offset, " and count ", count, "; an empty cell has -1 and 0, others neither");
+            half_empty.violated("cell ", cell, " has offset ", offset, " and count ", count,
+                                "; an empty cell has -1 and 0, others neither");
         } else if (count != 0) {
             if (offset < 0 || static_cast<std::uint64_t>(offset) != end)
-                misplaced.violated("cell ", cell, " has offset ", offset, "; the lists before it end at ", end);
+                misplaced.violated("cell ", cell, " has offset ", offset, "; the lists before it end at ",
+                                   end);
             if (offset >= 0 && static_cast<std::uint64_t>(offset) + count > references)
-                too_long.violated("cell ", cell, " has offset ", offset, " and count ", count, ", beyond the ", references, " references");
+                too_long.violated("cell ", cell, " has offset ", offset, " and count ", count,
+                                  ", beyond the ", references, " references");
         }
         end += count;
     }
-    if (end != references) wrong_sum.violated("counts add up to ", end, "; there are ", references, " references");
+    if (end != references)
+        wrong_sum.violated("counts add up to ", end, "; there are ", references, " references");
     return half_empty.holds() && misplaced.holds() && too_long.holds() && wrong_sum.holds();
 }
 
@@ -189,7 +208,8 @@ void check_references(const GridTables& tables, std::vector<std::string>& list) 
     Invariant out_of_range(list);
     for (std::size_t i = 0; i < tables.references.size(); ++i)
         if (tables.references[i] >= tables.header.triangle_count)
-            out_of_range.violated("reference ", i, " is triangle ", tables.references[i], "; there are ", tables.header.triangle_count);
+            out_of_range.violated("reference ", i, " is triangle ", tables.references[i], "; there are ",
+                                  tables.header.triangle_count);
 }
 
 /// Lists tile the references: check_cells() found nothing.
@@ -200,8 +220,8 @@ void check_order(const GridTables& tables, std::vector<std::string>& list) {
         const std::size_t end = first + tables.counts[cell];
         for (std::size_t i = first + 1; i < end; ++i)
             if (tables.references[i] <= tables.references[i - 1])
-                unordered.violated("cell ", cell, ": triangle ", tables.references[i], " follows ", tables.references[i - 1],
-                              " in its list; lists have to ascend");
+                unordered.violated("cell ", cell, ": triangle ", tables.references[i], " follows ",
+                                   tables.references[i - 1], " in its list; lists have to ascend");
         first = end;
     }
 }

@@ -23,9 +23,10 @@ struct GridTables {
     std::span<const ::SetkaInstance> instances;
 };
 
-/// What the tables violate, in sentences: each invariant once, with the first place and how many others there are. Empty for what
-/// a builder made. Tables without violations keep every kernel inside them and every walk finite, whoever wrote them; whether a
-/// list holds what it should is not looked at. Safe for any content and any sizes.
+/// What the tables violate, in sentences: each invariant once, with the first place and how many others there
+/// are. Empty for what a builder made. Tables without violations keep every kernel inside them and every walk
+/// finite, whoever wrote them; whether a list holds what it should is not looked at. Safe for any content and
+/// any sizes.
 [[nodiscard]] std::vector<std::string> violations_of(const GridTables& tables);
 
 }  // namespace setka

@@ -18,7 +18,17 @@ namespace setka {
 namespace {
 
 /// Sections in the order of the file.
-enum Place : std::size_t { header, bounds, offsets, counts, references, triangles, instance_starts, instances, place_count };
+enum Place : std::size_t {
+    header,
+    bounds,
+    offsets,
+    counts,
+    references,
+    triangles,
+    instance_starts,
+    instances,
+    place_count
+};
 
 constexpr const char* names[place_count] = {"header",     "bounds",    "offsets",         "counts",
                                             "references", "triangles", "instance starts", "instances"};
@@ -45,8 +55,8 @@ std::vector<std::string> geometry_violations(const WorldGeometry& geometry, cons
     std::vector<std::string> list;
     const auto require = [&](const char* member, std::uint32_t is, std::uint32_t should_be) {
         if (is != should_be)
-            list.push_back(std::string("geometry: ") + member + " is " + std::to_string(is) + "; the tables say " +
-                           std::to_string(should_be));
+            list.push_back(std::string("geometry: ") + member + " is " + std::to_string(is) +
+                           "; the tables say " + std::to_string(should_be));
     };
     require("triangle_count", geometry.triangle_count, tables.header.triangle_count);
     require("instance_count", geometry.instance_count, tables.header.instance_count);
@@ -115,19 +125,20 @@ class AlignedBytes {
 /// Whether the sections are a grid's, by number, names and sizes of their elements.
 void check_names(SavedStructure& saved) {
     if (saved.sections.size() != place_count) {
-        saved.violations.push_back("it has " + std::to_string(saved.sections.size()) + " sections; a uniform grid has " +
-                                   std::to_string(place_count));
+        saved.violations.push_back("it has " + std::to_string(saved.sections.size()) +
+                                   " sections; a uniform grid has " + std::to_string(place_count));
         return;
     }
     for (std::size_t i = 0; i < place_count; ++i) {
         const std::uint64_t size = saved.sections[i].size_bytes;
         if (saved.sections[i].name != names[i])
-            saved.violations.push_back("section " + std::to_string(i) + " is '" + saved.sections[i].name + "'; that of a uniform grid is '" +
-                                       names[i] + "'");
+            saved.violations.push_back("section " + std::to_string(i) + " is '" + saved.sections[i].name +
+                                       "'; that of a uniform grid is '" + names[i] + "'");
         const bool is_single = i == header || i == bounds;
         if (is_single ? size != element_bytes[i] : size % element_bytes[i] != 0)
-            saved.violations.push_back("section '" + saved.sections[i].name + "' has " + std::to_string(size) + " bytes; " +
-                                       (is_single ? "" : "a multiple of ") + std::to_string(element_bytes[i]) + " is needed");
+            saved.violations.push_back(
+                "section '" + saved.sections[i].name + "' has " + std::to_string(size) + " bytes; " +
+                (is_single ? "" : "a multiple of ") + std::to_string(element_bytes[i]) + " is needed");
     }
 }
 
@@ -135,7 +146,8 @@ void check_names(SavedStructure& saved) {
 GridTables tables_in(std::span<const std::byte> bytes, const SavedStructure& saved) {
     const auto view = [&]<typename T>(Place place, std::span<const T>& target) {
         const SavedSection& section = saved.sections[place];
-        target = {reinterpret_cast<const T*>(bytes.data() + section.offset_bytes), section.size_bytes / sizeof(T)};
+        target = {reinterpret_cast<const T*>(bytes.data() + section.offset_bytes),
+                  section.size_bytes / sizeof(T)};
     };
     GridTables tables;
     std::memcpy(&tables.header, bytes.data() + saved.sections[header].offset_bytes, sizeof tables.header);
@@ -166,16 +178,17 @@ Examined examine(std::span<const std::byte> bytes) {
     saved.violations = std::move(file.violations);
     if (!saved.violations.empty()) return result;
     if (file.header.kind != SETKA_FILE_UNIFORM_GRID)
-        throw Error(ErrorCategory::Unsupported, "it holds a structure of kind " + std::to_string(file.header.kind) +
+        throw Error(ErrorCategory::Unsupported, "it holds a structure of kind " +
+                                                    std::to_string(file.header.kind) +
                                                     "; this build reads kind 1, the uniform grid");
     check_names(saved);
     if (!saved.violations.empty()) return result;
     const GridTables tables = tables_in(bytes, saved);
     saved.grid = tables.header;
     if (digest_of(tables) != saved.digest)
-        saved.violations.push_back("its digest is " + digest_of(tables).to_string() + "; its header says " + saved.digest.to_string());
-    else
-        saved.violations = violations_of(tables);
+        saved.violations.push_back("its digest is " + digest_of(tables).to_string() + "; its header says " +
+                                   saved.digest.to_string());
+    else saved.violations = violations_of(tables);
     if (saved.violations.empty()) result.tables = tables;
     return result;
 }
@@ -203,7 +216,8 @@ Grid upload(Queue& queue, const Examined& examined) {
                 std::move(device_references));
 }
 
-/// work(bytes of the file), with the file's name in what it throws. A foreign file is refused by its first bytes.
+/// work(bytes of the file), with the file's name in what it throws. A foreign file is refused by its first
+/// bytes.
 template <typename Work>
 auto with_file(const std::filesystem::path& path, const Work& work) {
     detail::InputFile input(path);
@@ -216,7 +230,9 @@ auto with_file(const std::filesystem::path& path, const Work& work) {
         input.read(bytes.data() + first, bytes.size() - first);
         return work(bytes);
     } catch (const Error& error) {
-        throw Error(error.category(), "cannot load " + detail::in_quotes(path.string(), 1000) + ": " + error.what(), error.where());
+        throw Error(error.category(),
+                    "cannot load " + detail::in_quotes(path.string(), 1000) + ": " + error.what(),
+                    error.where());
     }
 }
 

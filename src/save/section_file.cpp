@@ -24,7 +24,9 @@ std::uint64_t aligned(std::uint64_t offset) {
     return (offset + SETKA_FILE_ALIGNMENT - 1) / SETKA_FILE_ALIGNMENT * SETKA_FILE_ALIGNMENT;
 }
 
-std::uint64_t table_end(std::uint64_t sections) { return sizeof(::SetkaFileHeader) + sections * sizeof(::SetkaFileSection); }
+std::uint64_t table_end(std::uint64_t sections) {
+    return sizeof(::SetkaFileHeader) + sections * sizeof(::SetkaFileSection);
+}
 
 /// Of the header before its checksum and of the table.
 std::uint64_t head_checksum(std::span<const std::byte> bytes, std::uint64_t sections) {
@@ -35,7 +37,9 @@ std::uint64_t head_checksum(std::span<const std::byte> bytes, std::uint64_t sect
 /// ASCII letters, digits and blanks, then zeros; else nothing.
 std::string name_of(const ::SetkaFileSection& entry) {
     const auto* end = std::find(std::begin(entry.name), std::end(entry.name), 0);
-    const auto is_word = [](std::uint8_t c) { return c == ' ' || (c >= '0' && c <= '9') || ((c | 32) >= 'a' && (c | 32) <= 'z'); };
+    const auto is_word = [](std::uint8_t c) {
+        return c == ' ' || (c >= '0' && c <= '9') || ((c | 32) >= 'a' && (c | 32) <= 'z');
+    };
     const bool is_name = end != std::end(entry.name) && std::all_of(std::begin(entry.name), end, is_word) &&
                          std::all_of(end, std::end(entry.name), [](std::uint8_t c) { return c == 0; });
     return is_name ? std::string(std::begin(entry.name), end) : std::string();
@@ -54,15 +58,18 @@ void check_head(std::span<const std::byte> bytes, SectionFile& file) {
     const ::SetkaFileHeader& header = file.header;
     const std::uint64_t end = table_end(header.section_count);
     if (end > size)
-        file.violations.push_back("it is truncated or its header is damaged: it has " + in_bytes(size) + ", a table of " +
-                                  std::to_string(header.section_count) + " sections ends at " + std::to_string(end));
+        file.violations.push_back("it is truncated or its header is damaged: it has " + in_bytes(size) +
+                                  ", a table of " + std::to_string(header.section_count) +
+                                  " sections ends at " + std::to_string(end));
     else if (head_checksum(bytes, header.section_count) != header.checksum)
-        file.violations.push_back("its header or its table of sections is damaged: their checksum does not hold");
+        file.violations.push_back(
+            "its header or its table of sections is damaged: their checksum does not hold");
     else if (size < header.size_bytes)
-        file.violations.push_back("it is truncated: it has " + in_bytes(size) + " of " + std::to_string(header.size_bytes));
+        file.violations.push_back("it is truncated: it has " + in_bytes(size) + " of " +
+                                  std::to_string(header.size_bytes));
     else if (size > header.size_bytes)
-        file.violations.push_back("it has " + in_bytes(size) + " where its header says " + std::to_string(header.size_bytes) +
-                                  ": something was added");
+        file.violations.push_back("it has " + in_bytes(size) + " where its header says " +
+                                  std::to_string(header.size_bytes) + ": something was added");
     else if (header.reserved != 0 || header.reserved_too != 0)
         file.violations.push_back("its header's reserved fields are not 0");
 }
@@ -79,10 +86,11 @@ void read_table(std::span<const std::byte> bytes, SectionFile& file) {
         if (section.name.empty()) wrong = "has no name of letters, digits and blanks";
         else if (entry.reserved != 0) wrong = "has a reserved field that is not 0";
         else if (entry.offset != start)
-            wrong = "lies at byte " + std::to_string(entry.offset) + "; what precedes it asks for " + std::to_string(start);
+            wrong = "lies at byte " + std::to_string(entry.offset) + "; what precedes it asks for " +
+                    std::to_string(start);
         else if (start > bytes.size() || entry.size_bytes > bytes.size() - start)
-            wrong = "has " + in_bytes(entry.size_bytes) + " from byte " + std::to_string(start) + ", beyond the file's " +
-                    in_bytes(bytes.size());
+            wrong = "has " + in_bytes(entry.size_bytes) + " from byte " + std::to_string(start) +
+                    ", beyond the file's " + in_bytes(bytes.size());
         if (!wrong.empty()) {
             file.violations.push_back("section " + std::to_string(i) + " '" + section.name + "' " + wrong);
             return;
@@ -91,7 +99,8 @@ void read_table(std::span<const std::byte> bytes, SectionFile& file) {
         file.sections.push_back(section);
     }
     if (end != bytes.size())
-        file.violations.push_back("its sections end at byte " + std::to_string(end) + " of " + std::to_string(bytes.size()));
+        file.violations.push_back("its sections end at byte " + std::to_string(end) + " of " +
+                                  std::to_string(bytes.size()));
 }
 
 /// Every byte that is not in the head is under a section's checksum or has to be 0.
@@ -100,9 +109,11 @@ void check_contents(std::span<const std::byte> bytes, SectionFile& file) {
     for (const SavedSection& section : file.sections) {
         const auto padding = bytes.subspan(end, section.offset_bytes - end);
         if (!std::ranges::all_of(padding, [](std::byte b) { return b == std::byte{0}; }))
-            file.violations.push_back("the padding before section '" + section.name + "' is damaged: it is not 0");
+            file.violations.push_back("the padding before section '" + section.name +
+                                      "' is damaged: it is not 0");
         if (checksum({bytes.subspan(section.offset_bytes, section.size_bytes)}) != section.checksum)
-            file.violations.push_back("section '" + section.name + "' is damaged: its checksum does not hold");
+            file.violations.push_back("section '" + section.name +
+                                      "' is damaged: its checksum does not hold");
         end = section.offset_bytes + section.size_bytes;
     }
 }
@@ -144,15 +155,18 @@ std::vector<std::byte> SectionWriter::finish(const Digest& digest) && {
 }
 
 void check_beginning(std::span<const std::byte> bytes) {
-    if (bytes.empty() || std::memcmp(bytes.data(), SETKA_FILE_MAGIC, std::min(bytes.size(), magic_bytes)) != 0)
-        throw Error(ErrorCategory::InvalidData, "it is not a file that setka saved: it does not begin with SETKA");
+    if (bytes.empty() ||
+        std::memcmp(bytes.data(), SETKA_FILE_MAGIC, std::min(bytes.size(), magic_bytes)) != 0)
+        throw Error(ErrorCategory::InvalidData,
+                    "it is not a file that setka saved: it does not begin with SETKA");
     if (bytes.size() < prefix_bytes) return;  // truncated
     std::uint32_t format = 0;
     std::memcpy(&format, bytes.data() + magic_bytes, sizeof format);
     if (format != SETKA_FILE_VERSION)
-        throw Error(ErrorCategory::Unsupported, "it has version " + std::to_string(format) + " of the file format; setka " + version() +
-                                                    " reads version " + std::to_string(SETKA_FILE_VERSION) +
-                                                    (format > SETKA_FILE_VERSION ? ": a newer setka is needed" : ""));
+        throw Error(ErrorCategory::Unsupported,
+                    "it has version " + std::to_string(format) + " of the file format; setka " + version() +
+                        " reads version " + std::to_string(SETKA_FILE_VERSION) +
+                        (format > SETKA_FILE_VERSION ? ": a newer setka is needed" : ""));
 }
 
 SectionFile read_sections(std::span<const std::byte> bytes) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// How do named sections become the bytes of a file, and which bytes are such a file? The container of setka/file_format.h,
-/// whatever the structure in it.
+/// How do named sections become the bytes of a file, and which bytes are such a file? The container of
+/// setka/file_format.h, whatever the structure in it.
 #pragma once
 
 #include <cstddef>
@@ -37,11 +37,13 @@ class SectionWriter {
 /// The sections of a file, as far as they can be told.
 struct SectionFile {
     ::SetkaFileHeader header{};
-    std::vector<SavedSection> sections;   ///< empty unless the table holds
-    std::vector<std::string> violations;  ///< in sentences; without any, all of the file is in place and undamaged
+    std::vector<SavedSection> sections;  ///< empty unless the table holds
+    std::vector<std::string>
+        violations;  ///< in sentences; without any, all of the file is in place and undamaged
 };
 
-/// Throws InvalidData if bytes that begin like this are no file of setka, Unsupported if their format is not this build's.
+/// Throws InvalidData if bytes that begin like this are no file of setka, Unsupported if their format is not
+/// this build's.
 void check_beginning(std::span<const std::byte> bytes);
 
 /// Examines bytes. Throws what check_beginning() throws.

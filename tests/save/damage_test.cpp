@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Is damage of any kind refused? Every bit flipped, every length cut, noise, and files of others, on the host.
+/// Is damage of any kind refused? Every bit flipped, every length cut, noise, and files of others, on the
+/// host.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -45,7 +46,8 @@ std::string owner(const Bytes& file, std::size_t at) {
     if (at < 64 + 64 * count) return "header";
     for (std::size_t i = 0; i < count; ++i) {
         const SetkaFileSection section = section_of(file, i);
-        const std::string name = std::string("'").append(reinterpret_cast<const char*>(section.name)).append("'");
+        const std::string name =
+            std::string("'").append(reinterpret_cast<const char*>(section.name)).append("'");
         if (at < section.offset) return "padding before section " + name;
         if (at < section.offset + section.size_bytes) return "section " + name + " is damaged";
     }
@@ -119,8 +121,10 @@ TEST(Damage, AnotherKindIsNamed) {
 }
 
 TEST(Damage, ForeignFilesAreRefused) {
-    for (const std::string text : {"ply\nformat binary_little_endian 1.0\n", "SETKA\n", "SETKA\r\n\x1b", "setka\r\n\x1a", "{}"}) {
-        EXPECT_THAT(refusal(std::as_bytes(std::span(text))), HasSubstr("not a file that setka saved")) << text;
+    for (const std::string text :
+         {"ply\nformat binary_little_endian 1.0\n", "SETKA\n", "SETKA\r\n\x1b", "setka\r\n\x1a", "{}"}) {
+        EXPECT_THAT(refusal(std::as_bytes(std::span(text))), HasSubstr("not a file that setka saved"))
+            << text;
         EXPECT_EQ(category_of(std::as_bytes(std::span(text))), setka::ErrorCategory::InvalidData) << text;
     }
 }

@@ -64,8 +64,7 @@ Model model_of(const oracle::Scene& scene, const oracle::GridOptions& options) {
         instance.flags = scene.meshes[placed.mesh].normals.empty() ? 0 : SETKA_INSTANCE_HAS_NORMALS;
         model.instances.push_back(instance);
         model.instance_starts.push_back(
-            instance.first_triangle +
-            static_cast<std::uint32_t>(scene.meshes[placed.mesh].triangles.size()));
+            instance.first_triangle + static_cast<std::uint32_t>(scene.meshes[placed.mesh].triangles.size()));
     }
     return model;
 }

@@ -97,7 +97,8 @@ std::string error(setka::ErrorCategory category, const Action& action) {
 }
 
 void write(const fs::path& file, std::span<const std::byte> bytes) {
-    std::ofstream(file, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+    std::ofstream(file, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
 }
 Bytes read(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
@@ -106,13 +107,15 @@ Bytes read(const fs::path& file) {
     return {bytes.begin(), bytes.end()};
 }
 
-std::string inspect_error(const fs::path& file, setka::ErrorCategory category = setka::ErrorCategory::InvalidData) {
+std::string inspect_error(const fs::path& file,
+                          setka::ErrorCategory category = setka::ErrorCategory::InvalidData) {
     return error(category, [&] { (void)setka::inspect(file); });
 }
 
 TEST(InputFiles, ThatCannotBeReadSayWhy) {
     const Folder folder;
-    EXPECT_THAT(inspect_error(folder / "none.setka"), AllOf(HasSubstr("none.setka"), HasSubstr("no such file")));
+    EXPECT_THAT(inspect_error(folder / "none.setka"),
+                AllOf(HasSubstr("none.setka"), HasSubstr("no such file")));
     EXPECT_THAT(inspect_error(folder.path()), HasSubstr("directory"));
     write(folder / "empty.setka", {});
     EXPECT_THAT(inspect_error(folder / "empty.setka"), HasSubstr("empty"));
@@ -122,7 +125,8 @@ TEST(InputFiles, ThatCannotBeReadSayWhy) {
     write(folder / "secret.setka", file_of(model_of(small_scene())));
     ASSERT_EQ(::chmod((folder / "secret.setka").c_str(), 0), 0);
     const OrdinaryUser user;
-    EXPECT_THAT(inspect_error(folder / "secret.setka"), AllOf(HasSubstr("secret.setka"), HasSubstr("Permission denied")));
+    EXPECT_THAT(inspect_error(folder / "secret.setka"),
+                AllOf(HasSubstr("secret.setka"), HasSubstr("Permission denied")));
 }
 
 TEST(InputFiles, AreNamedInEveryRefusal) {
@@ -133,9 +137,11 @@ TEST(InputFiles, AreNamedInEveryRefusal) {
     Bytes newer = sound;
     newer[8] = std::byte{9};
     write(folder / "newer.setka", newer);
-    EXPECT_THAT(inspect_error(folder / "newer.setka", setka::ErrorCategory::Unsupported), AllOf(HasSubstr("newer.setka"), HasSubstr("version 9")));
+    EXPECT_THAT(inspect_error(folder / "newer.setka", setka::ErrorCategory::Unsupported),
+                AllOf(HasSubstr("newer.setka"), HasSubstr("version 9")));
     write(folder / "cut.setka", std::span(sound).first(sound.size() - 1));
-    EXPECT_THAT(setka::inspect(folder / "cut.setka").violations, ::testing::ElementsAre(HasSubstr("truncated")));
+    EXPECT_THAT(setka::inspect(folder / "cut.setka").violations,
+                ::testing::ElementsAre(HasSubstr("truncated")));
 }
 
 /// A terabyte that is no file of setka is refused by its first bytes, not read.
@@ -173,7 +179,9 @@ TEST_P(OutputFiles, HoldTheSerializedGrid) {
     EXPECT_EQ(read(file), setka::serialize(*queue_, *grid_));
     EXPECT_EQ(folder.entries(), 1);
     EXPECT_EQ(setka::load_grid(*queue_, file).digest(*queue_), grid_->digest(*queue_));
-    EXPECT_THAT(error(setka::ErrorCategory::InvalidData, [&] { (void)setka::load_grid(*queue_, folder / "none"); }), HasSubstr("no such file"));
+    EXPECT_THAT(
+        error(setka::ErrorCategory::InvalidData, [&] { (void)setka::load_grid(*queue_, folder / "none"); }),
+        HasSubstr("no such file"));
     fs::resize_file(file, 1000);
     EXPECT_THAT(error(setka::ErrorCategory::InvalidData, [&] { (void)setka::load_grid(*queue_, file); }),
                 AllOf(HasSubstr("grid.setka"), HasSubstr("truncated")));
@@ -187,7 +195,8 @@ TEST_P(OutputFiles, ThatCannotBeWrittenLeaveNothingBehind) {
     {
         ASSERT_EQ(::mkdir((folder / "locked").c_str(), 0555), 0);
         const OrdinaryUser user;
-        EXPECT_THAT(save_error(folder / "locked/grid.setka"), AllOf(HasSubstr("locked/grid.setka"), HasSubstr("Permission denied")));
+        EXPECT_THAT(save_error(folder / "locked/grid.setka"),
+                    AllOf(HasSubstr("locked/grid.setka"), HasSubstr("Permission denied")));
     }
     EXPECT_TRUE(fs::is_empty(folder / "locked"));
     EXPECT_EQ(folder.entries(), 1);
@@ -200,7 +209,8 @@ TEST_P(OutputFiles, ThatDoNotFitLeaveTheOldOne) {
     for (const rlim_t room : {0, 1000, 100000}) {
         ASSERT_GT(setka::serialize(*queue_, *grid_).size(), room);
         const FileSizeLimit limit(room);
-        EXPECT_THAT(save_error(folder / "old.setka"), AllOf(HasSubstr("old.setka"), HasSubstr("File too large")));
+        EXPECT_THAT(save_error(folder / "old.setka"),
+                    AllOf(HasSubstr("old.setka"), HasSubstr("File too large")));
         EXPECT_THAT(save_error(folder / "new.setka"), HasSubstr("File too large"));
     }
     EXPECT_EQ(read(folder / "old.setka"), old);

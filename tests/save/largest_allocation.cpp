@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// How much does the code under test ask for at once? See the header. In a file of its own, so that compilers see pairs of new and delete,
-/// not what they are made of.
+/// How much does the code under test ask for at once? See the header. In a file of its own, so that compilers
+/// see pairs of new and delete, not what they are made of.
 #include "save/largest_allocation.hpp"
 
 #include <atomic>

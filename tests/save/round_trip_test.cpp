@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Is a loaded grid the one that was saved? Files, tables, digests, hits and pictures, on every device and between
-/// devices, byte for byte.
+/// Is a loaded grid the one that was saved? Files, tables, digests, hits and pictures, on every device and
+/// between devices, byte for byte.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -29,26 +29,30 @@ AssertionResult same_files(const Bytes& expected, const Bytes& actual) {
     std::string place = "header or table of sections";
     for (std::size_t i = 0; i < header_of(expected).section_count; ++i)
         if (at >= section_of(expected, i).offset)
-            place = "section " + std::to_string(i) + " at byte " + std::to_string(at - section_of(expected, i).offset);
-    return AssertionFailure() << "files of " << expected.size() << " and " << actual.size() << " bytes differ first at byte " << at
-                              << ": " << place;
+            place = "section " + std::to_string(i) + " at byte " +
+                    std::to_string(at - section_of(expected, i).offset);
+    return AssertionFailure() << "files of " << expected.size() << " and " << actual.size()
+                              << " bytes differ first at byte " << at << ": " << place;
 }
 
-std::vector<std::uint32_t> occlusion(setka::Queue& queue, const setka::Structure& structure, std::span<const setka::Ray> rays) {
+std::vector<std::uint32_t> occlusion(setka::Queue& queue, const setka::Structure& structure,
+                                     std::span<const setka::Ray> rays) {
     return setka::Tracer().any_hit(queue, structure, rays);
 }
 
 /// Hits of both steps, seen through a mask too, and occlusion.
-AssertionResult same_answers(setka::Queue& queue_a, const setka::Structure& a, setka::Queue& queue_b, const setka::Grid& b,
-                             std::span<const setka::Ray> rays) {
+AssertionResult same_answers(setka::Queue& queue_a, const setka::Structure& a, setka::Queue& queue_b,
+                             const setka::Grid& b, std::span<const setka::Ray> rays) {
     for (const auto step : {setka::GridStep::Dda, setka::GridStep::BranchFree})
         for (const std::uint32_t mask : {0x7fffffffu, 2u, SETKA_MASK_OPAQUE}) {
             const setka::Tracer tracer({.step = step, .mask = mask});
-            if (const auto same = support::same_hits(rays, tracer.closest_hit(queue_a, a, rays), tracer.closest_hit(queue_b, b, rays));
+            if (const auto same = support::same_hits(rays, tracer.closest_hit(queue_a, a, rays),
+                                                     tracer.closest_hit(queue_b, b, rays));
                 !same)
                 return AssertionFailure() << same.message() << "\n  mask " << mask;
         }
-    if (occlusion(queue_a, a, rays) != occlusion(queue_b, b, rays)) return AssertionFailure() << "occlusion differs";
+    if (occlusion(queue_a, a, rays) != occlusion(queue_b, b, rays))
+        return AssertionFailure() << "occlusion differs";
     return AssertionSuccess();
 }
 
@@ -94,7 +98,8 @@ TEST(BetweenDevices, GridsAreTheSame) {
         const auto rays = support::adversarial_rays(oracle::make_world(scene), 1000, 12);
         for (const auto& from : configurations) {
             setka::Queue saver = support::open_once(from.device_id, from.options).make_queue();
-            const setka::Grid grid = setka::make_grid_builder()->build(saver, setka::DeviceScene(saver, scene));
+            const setka::Grid grid =
+                setka::make_grid_builder()->build(saver, setka::DeviceScene(saver, scene));
             const Bytes file = setka::serialize(saver, grid);
             for (const auto& to : configurations) {
                 SCOPED_TRACE(std::string(name) + " from " + from.name + " to " + to.name);
@@ -146,14 +151,18 @@ TEST_P(Loading, RefusesBeforeAnythingIsAllocated) {
     queue.finish();
     const std::uint64_t held = device().memory_in_use_bytes();
     device().reset_peak_memory();
-    const std::string why = error(setka::ErrorCategory::InvalidData, [&] { (void)setka::deserialize_grid(queue, file_of(model)); });
-    EXPECT_THAT(why, HasSubstr("cannot load these bytes: instance 1: first_triangle is 1; its start is 2 (and 1 more)"));
+    const std::string why = error(setka::ErrorCategory::InvalidData,
+                                  [&] { (void)setka::deserialize_grid(queue, file_of(model)); });
+    EXPECT_THAT(
+        why,
+        HasSubstr("cannot load these bytes: instance 1: first_triangle is 1; its start is 2 (and 1 more)"));
     EXPECT_EQ(device().peak_memory_bytes(), held);
 
     Bytes newer = file_of(model_of(small_scene()));
     newer[8] = std::byte{2};
-    EXPECT_THAT(error(setka::ErrorCategory::Unsupported, [&] { (void)setka::deserialize_grid(queue, newer); }),
-                HasSubstr("version 2 of the file format"));
+    EXPECT_THAT(
+        error(setka::ErrorCategory::Unsupported, [&] { (void)setka::deserialize_grid(queue, newer); }),
+        HasSubstr("version 2 of the file format"));
 }
 
 TEST_P(Loading, RefusesWhatTheBudgetDoesNotHold) {
@@ -201,11 +210,13 @@ TEST_P(Loading, WhatWouldNotLoadIsNotSaved) {
     header.reference_count -= 1;
     const setka::Grid other_header = remade(sound.geometry(), header);
     EXPECT_THAT(setka::validate(queue, other_header), ::testing::ElementsAre(HasSubstr("references has")));
-    EXPECT_THAT(error(setka::ErrorCategory::InvalidArgument, [&] { (void)setka::serialize(queue, other_header); }),
-                HasSubstr("this grid would not load: references has"));
+    EXPECT_THAT(
+        error(setka::ErrorCategory::InvalidArgument, [&] { (void)setka::serialize(queue, other_header); }),
+        HasSubstr("this grid would not load: references has"));
     setka::WorldGeometry geometry = sound.geometry();
     geometry.common_mask = 1;
-    EXPECT_THAT(setka::validate(queue, remade(geometry, sound.header())), ::testing::ElementsAre(HasSubstr("common_mask is 1")));
+    EXPECT_THAT(setka::validate(queue, remade(geometry, sound.header())),
+                ::testing::ElementsAre(HasSubstr("common_mask is 1")));
     EXPECT_TRUE(setka::validate(queue, remade(sound.geometry(), sound.header())).empty());
 }
 
