@@ -2,6 +2,7 @@
 /// What grid does a scene get, how large is it, and how long does it take to build?
 #include <fmt/core.h>
 
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -12,6 +13,8 @@
 #include "workload/measure.hpp"
 #include "cli/options.hpp"
 #include "cli/scene_input.hpp"
+#include "core/file.hpp"
+#include "setka/save.hpp"
 
 namespace setka::cli {
 
@@ -22,6 +25,7 @@ struct Options {
     DeviceSelection device;
     GridOptions grid;
     std::uint32_t repeats = 1;
+    std::string save_file;
     bool as_json = false;
 };
 
@@ -34,6 +38,8 @@ struct Report {
     workload::Measurement time;
     GridStatistics statistics;
     Digest digest;
+    std::string saved_file;  ///< empty if none was asked for
+    std::uint64_t saved_bytes = 0;
 };
 
 void print_json(const Grid& grid, const Report& report) {
@@ -42,7 +48,7 @@ void print_json(const Grid& grid, const Report& report) {
     for (const Section& section : grid.sections()) sections[section.name] = section.size_bytes;
     for (const StageTime& stage : report.time.stages)
         stages.push_back({{"stage", stage.stage}, {"time_ms", stage.time_ms}, {"launches", stage.launches}});
-    const nlohmann::ordered_json json{
+    nlohmann::ordered_json json{
         {"device", report.device},
         {"triangles", header.triangle_count},
         {"instances", header.instance_count},
@@ -64,6 +70,7 @@ void print_json(const Grid& grid, const Report& report) {
         {"stages", stages},
         {"digest", report.digest.to_string()},
     };
+    if (!report.saved_file.empty()) json["saved"] = {{"file", report.saved_file}, {"bytes", report.saved_bytes}};
     fmt::print("{}\n", json.dump(2));
 }
 
@@ -93,9 +100,13 @@ void print_text(const std::string& name, const Grid& grid, const Report& report)
                report.time.repeats > 1 ? fmt::format(", median of {}", report.time.repeats) : "");
     fmt::print("wall time        {:.3f} ms, {:.2f} Mtri/s\n", report.time.wall_ms, mtri_per_s);
     fmt::print("digest           {}\n", report.digest.to_string());
+    if (!report.saved_file.empty()) fmt::print("saved            {}: {}\n", report.saved_file, as_bytes(report.saved_bytes));
 }
 
 [[nodiscard]] ExitCode run(const Options& options) {
+    if (!options.save_file.empty()) {
+        const detail::PendingFile made_and_removed(options.save_file);  // a bad name is refused before the work
+    }
     const Scene scene = options.input.load();
     const Device device = options.device.open();
     Queue queue = device.make_queue();
@@ -117,6 +128,11 @@ void print_text(const std::string& name, const Grid& grid, const Report& report)
     report.peak_bytes = device.peak_memory_bytes() - report.scene_bytes;
     report.statistics = grid_statistics(queue, *grid);
     report.digest = grid->digest(queue);
+    if (!options.save_file.empty()) {
+        save(queue, *grid, options.save_file);
+        report.saved_file = options.save_file;
+        report.saved_bytes = std::filesystem::file_size(options.save_file);
+    }
     if (options.as_json) print_json(*grid, report);
     else print_text(options.input.name(), *grid, report);
     return exit_ok;
@@ -130,6 +146,8 @@ Command add_build_command(CLI::App& program) {
     options->input.add_to(*app);
     add_integer(*app, "--repeat", options->repeats, {1, 100000},
                 "builds to take the median of; above 1, another one warms up");
+    app->add_option("--save", options->save_file, "write the grid to this file; the library loads it, 'setka validate' checks it")
+        ->type_name("FILE");
     app->add_flag("--json", options->as_json, "print JSON");
     add_grid_options(*app, options->grid);
     options->device.add_to(*app);

@@ -25,6 +25,7 @@ struct Command {
 [[nodiscard]] Command add_build_command(CLI::App& program);
 [[nodiscard]] Command add_trace_command(CLI::App& program);
 [[nodiscard]] Command add_verify_command(CLI::App& program);
+[[nodiscard]] Command add_validate_command(CLI::App& program);
 [[nodiscard]] Command add_compare_command(CLI::App& program);
 [[nodiscard]] Command add_scene_command(CLI::App& program);
 

@@ -25,6 +25,13 @@ Digest Digester::digest() const {
     return {hash.high64, hash.low64};
 }
 
+std::uint64_t checksum(std::initializer_list<std::span<const std::byte>> pieces) {
+    XXH3_state_t hash;
+    XXH3_64bits_reset(&hash);
+    for (const auto piece : pieces) XXH3_64bits_update(&hash, piece.data(), piece.size());
+    return XXH3_64bits_digest(&hash);
+}
+
 Digest parse_digest(std::string_view text) {
     const auto half = [](std::string_view digits, std::uint64_t& value) {
         const char* const end = digits.data() + digits.size();

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-/// What do these bytes come to? XXH3-128 over pieces, in order.
+/// What do these bytes come to? XXH3-128 over pieces, in order, and XXH3-64 where a short one will do.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <initializer_list>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -31,6 +33,9 @@ class Digester {
     struct State;
     std::unique_ptr<State> state_;
 };
+
+/// XXH3-64 of pieces one behind the other: what files are checked by.
+[[nodiscard]] std::uint64_t checksum(std::initializer_list<std::span<const std::byte>> pieces);
 
 /// 32 hexadecimal digits, as Digest::to_string writes them. Throws InvalidData for any other text.
 [[nodiscard]] Digest parse_digest(std::string_view text);

@@ -171,6 +171,18 @@ void render_measure(Picture& picture, const Structure& structure, const Tracer& 
     }
 }
 
+/// A structure built of the scene shares its table; one that was loaded has its own, which must be the same: hits name triangles
+/// within instances, and shading looks them up in the scene.
+void check_instances(Queue& queue, const DeviceScene& scene, const WorldGeometry& geometry) {
+    if (geometry.instance_starts.memory() == scene.instance_starts().memory()) return;
+    const auto mine = queue.download(geometry.instance_starts), other = queue.download(scene.instance_starts());
+    const auto [a, b] = std::ranges::mismatch(mine, other);
+    if (a == mine.end() && b == other.end()) return;
+    throw Error(ErrorCategory::InvalidArgument,
+                "structure and scene part at instance " + std::to_string(a - mine.begin()) +
+                    ", which starts at another triangle; the structure must be built of the scene");
+}
+
 }  // namespace
 
 Renderer::Renderer(const RenderOptions& options) : options_(options) {
@@ -191,6 +203,7 @@ Image Renderer::render(Queue& queue, const DeviceScene& scene, const Structure& 
                         std::to_string(scene.triangle_count()) + " in " +
                         std::to_string(scene.instance_count()) +
                         "; the structure must be built of the scene");
+    check_instances(queue, scene, geometry);
     statistics_ = {};
     Picture picture(queue, options_, camera);
     statistics_.primary_rays = picture.pixel_count() * picture.samples();

@@ -77,6 +77,9 @@ const std::vector<Misuse> misuses{
     {"size_of_file", {"build", "no.obj", "--triangles", "9"}, {"--triangles 9"}},
     {"bad_scene_size", {"build", "torus:many"}, {"torus", "'many'"}},
     {"no_such_scene", {"build", "teapot"}, {"'teapot'", "neither a file nor a built-in scene", "showcase"}},
+    {"validate_nothing", {"validate"}, {"file", "setka validate --help"}},
+    {"validate_missing", {"validate", "none.setka"}, {"none.setka", "no such file"}},
+    {"save_nowhere", {"build", "cube", "--save", "none/grid.setka"}, {"none/grid.setka", "no directory"}},
     {"compare_nothing", {"compare"}, {"FILES"}},
     {"compare_one", {"compare", "cube", "--devices", "opencl:0"}, {"--devices", "'opencl:0'", "opencl:0/serial,opencl:0/group"}},
     {"compare_no_name", {"compare", "cube", "--devices", "opencl:0,"}, {"--devices", "''"}},
@@ -96,7 +99,7 @@ INSTANTIATE_TEST_SUITE_P(Misuses, Usage, ::testing::ValuesIn(misuses),
                          [](const auto& test) { return test.param.name; });
 
 TEST(Help, IsThereForEverything) {
-    for (const char* command : {"devices", "render", "build", "trace", "verify", "compare", "scene"}) {
+    for (const char* command : {"devices", "render", "build", "trace", "verify", "validate", "compare", "scene"}) {
         const Outcome outcome = run({command, "--help"});
         EXPECT_EQ(outcome.exit_code, 0);
         EXPECT_THAT(outcome.output, HasSubstr("--help"));

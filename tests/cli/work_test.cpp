@@ -200,6 +200,73 @@ TEST(Build, DigestDependsOnTheSceneAlone) {
     EXPECT_NE(run_json({"build", "soup:3000", "--density", "5"})["digest"], digest);
 }
 
+TEST(Build, SavesWhatValidateChecks) {
+    SETKA_NEED_DEVICE();
+    const Folder folder;
+    const std::string file = folder / "grid.setka";
+    const json built = run_json({"build", "sphere:2000", "--save", file});
+    EXPECT_EQ(built["saved"]["file"], file);
+    const std::string bytes = read_file(file);
+    EXPECT_EQ(built["saved"]["bytes"], bytes.size());
+    EXPECT_THAT(run({"build", "sphere:2000", "--save", file}).output, HasSubstr("saved            " + file));
+    EXPECT_EQ(read_file(file), bytes);
+
+    const json report = run_json({"validate", file});
+    EXPECT_EQ(report["valid"], true);
+    EXPECT_TRUE(report["violations"].empty());
+    EXPECT_EQ(report["format_version"], 1);
+    EXPECT_EQ(report["bytes"], bytes.size());
+    for (const char* figure : {"digest", "triangles", "instances", "dims", "cells", "pairs", "cell_size"})
+        EXPECT_EQ(report[figure], built[figure]) << figure;
+    ASSERT_EQ(report["sections"].size(), 8u);
+    EXPECT_EQ(report["sections"][5]["name"], "triangles");
+    EXPECT_EQ(report["sections"][5]["bytes"], 2000 * 36);
+    const Outcome text = run({"validate", file});
+    EXPECT_EQ(text.exit_code, 0);
+    EXPECT_THAT(text.output, ::testing::EndsWith("\nvalid\n"));
+    EXPECT_THAT(text.output, HasSubstr(report["digest"].get<std::string>()));
+    EXPECT_THAT(text.output, HasSubstr("instance starts"));
+}
+
+TEST(Validate, TellsDamageFromForeignFiles) {
+    SETKA_NEED_DEVICE();
+    const Folder folder;
+    const std::string file = folder / "grid.setka";
+    ASSERT_EQ(run({"build", "cube", "--save", file}).exit_code, 0);
+    const std::string sound = read_file(file);
+    const auto check = [&](const std::string& bytes) {
+        write_file(file, bytes);
+        const Outcome outcome = run({"validate", file});
+        const Outcome as_json = run({"validate", file, "--json"});
+        EXPECT_EQ(as_json.exit_code, outcome.exit_code);
+        if (outcome.exit_code == 1) {
+            EXPECT_EQ(json::parse(as_json.output)["valid"], false);
+            EXPECT_FALSE(json::parse(as_json.output)["violations"].empty());
+            EXPECT_THAT(outcome.output, HasSubstr("NOT VALID"));
+            EXPECT_EQ(outcome.errors, "");
+        }
+        return outcome;
+    };
+    std::string damaged = sound;
+    damaged.back() ^= 1;
+    EXPECT_EQ(check(damaged).exit_code, 1);
+    EXPECT_THAT(check(damaged).output, HasSubstr("violation        section 'instances' is damaged"));
+    damaged = sound;
+    damaged[20] ^= 1;
+    EXPECT_EQ(check(damaged).exit_code, 1);
+    EXPECT_THAT(check(damaged).output, HasSubstr("header"));
+    EXPECT_EQ(check(sound.substr(0, sound.size() / 2)).exit_code, 1);
+    EXPECT_THAT(check(sound.substr(0, sound.size() / 2)).output, HasSubstr("truncated"));
+    EXPECT_EQ(check(sound.substr(0, 20)).exit_code, 1);
+    EXPECT_EQ(check(sound + "x").exit_code, 1);
+    std::string newer = sound;
+    newer[8] = 2;
+    expect_one_clear_line(check(newer), {file, "version 2", "reads version 1", "newer setka"});
+    expect_one_clear_line(check("solid not a grid"), {file, "not a file that setka saved"});
+    expect_one_clear_line(check(""), {file, "empty"});
+    expect_one_clear_line(run({"validate", folder.path().string()}), {"directory"});
+}
+
 TEST(Scene, WrittenAndReadAgainIsTheSame) {
     SETKA_NEED_DEVICE();
     const Folder folder;

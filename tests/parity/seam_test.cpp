@@ -52,7 +52,7 @@ std::vector<std::string> lines_with(const fs::path& file, const std::string& wor
 
 TEST(Seam, NoApiAboveTheBackends) {
     std::size_t searched = 0;
-    for (const char* folder : {"src/accel", "src/algo", "src/trace", "src/device", "src/scene"})
+    for (const char* folder : {"src/accel", "src/algo", "src/trace", "src/device", "src/scene", "src/save"})
         for (const fs::path& file : files_under(root / folder)) {
             ++searched;
             for (const char* word : {"cuda", "opencl"})
