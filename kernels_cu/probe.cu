@@ -9,11 +9,12 @@ SK_KERNEL void probe_rounding(sk_u32 n, SK_GLOBAL const float* tuples, SK_GLOBAL
     if (i < n) sk_probe_rounding(i, n, tuples, words);
 }
 
-SK_KERNEL void probe_layout(sk_u32 first, SetkaRay ray, SetkaHit hit, SetkaTraceCost cost, SetkaBounds bounds,
-                            SetkaInstance instance, SetkaGridHeader grid, sk_trace_params params,
-                            SkCamera camera, SkMaterial material, SkLight light, SkBackground background,
+SK_KERNEL void probe_layout(sk_u32 first, SetkaRay ray, SetkaHit hit, SetkaPrimitive primitive,
+                            SetkaTraceCost cost, SetkaBounds bounds, SetkaInstance instance,
+                            SetkaGridHeader grid, sk_trace_params params, SkCamera camera,
+                            SkMaterial material, SkLight light, SkBackground background,
                             SkSurfacePoint surface, SK_GLOBAL const char* memory, SK_GLOBAL sk_u32* words) {
-    sk_probe_layout(first, ray, hit, cost, bounds, instance, grid, params, camera, material, light,
+    sk_probe_layout(first, ray, hit, primitive, cost, bounds, instance, grid, params, camera, material, light,
                     background, surface, memory, words);
 }
 

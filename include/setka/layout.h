@@ -43,6 +43,12 @@ typedef struct SetkaHit {
     setka_u32 instance;
 } SetkaHit;
 
+/** A triangle as hits name it: its index within the mesh of an instance. 8 bytes. */
+typedef struct SetkaPrimitive {
+    setka_u32 primitive;
+    setka_u32 instance;
+} SetkaPrimitive;
+
 /** What one ray cost: grid cells visited and triangles tested. 8 bytes. */
 typedef struct SetkaTraceCost {
     setka_u32 steps;

@@ -15,6 +15,7 @@ namespace setka {
 
 using Ray = ::SetkaRay;
 using Hit = ::SetkaHit;
+using Primitive = ::SetkaPrimitive;
 using Bounds = ::SetkaBounds;
 using TraceCost = ::SetkaTraceCost;
 
@@ -63,7 +64,7 @@ struct Instance {
     Matrix34 transform;
     std::uint32_t material = 0;
     /// Visible to a query whose mask shares a bit with this one. The highest bit is SETKA_MASK_OPAQUE: it is set on the device
-    /// according to the material.
+    /// according to the material, except where no other bit is set: a mask of 0 hides from every query.
     std::uint32_t mask = 0x7fffffffu;
 };
 

@@ -15,6 +15,7 @@
     X(trace_pack) X(trace_brute_closest) X(trace_brute_any)                                                \
     X(trace_grid_closest_dda) X(trace_grid_closest_free) X(trace_grid_any_dda) X(trace_grid_any_free)      \
     X(trace_grid_cost_dda) X(trace_grid_cost_free)                                                         \
+    X(trace_brute_count) X(trace_brute_all) X(trace_grid_count) X(trace_grid_all)                          \
     X(shade_camera_rays) X(shade_surface) X(shade_shadow_rays) X(shade_shadow_narrow) X(shade_light)       \
     X(shade_child_count) X(shade_child_emit) X(shade_gather) X(shade_normals) X(shade_depth)               \
     X(shade_cost) X(shade_ramp) X(shade_resolve) X(shade_encode)

@@ -138,7 +138,7 @@ Buffer<std::uint32_t> enqueue_probe(Queue& queue, std::size_t rounding, std::siz
     queue.impl().fill(*words.memory(), 0xa5a5a5a5u, words.size_bytes());
     launch_items(queue, Kernel::probe_rounding, input.tuple_count, tuples, words);
     launch_groups(queue, Kernel::probe_layout, 1, 1, static_cast<std::uint32_t>(rounding), r.ray, r.hit,
-                  r.cost, r.bounds, r.instance, r.grid, r.params, r.camera, r.material, r.light, r.background,
+                  r.primitive, r.cost, r.bounds, r.instance, r.grid, r.params, r.camera, r.material, r.light, r.background,
                   r.surface, memory, words);
     launch_groups(queue, Kernel::probe_barrier, probe_barrier_groups,
                   queue.device().options().work_group_size, static_cast<std::uint32_t>(rounding + layout),

@@ -235,8 +235,8 @@ ProbeWords expected_probe(std::uint32_t group_size) {
     }
     words.layout.resize(record_count * SK_PROBE_SLOT);
     const ProbeRecords& r = input.records;
-    sk_probe_layout(0, r.ray, r.hit, r.cost, r.bounds, r.instance, r.grid, r.params, r.camera, r.material,
-                    r.light, r.background, r.surface, reinterpret_cast<const char*>(input.memory.data()),
+    sk_probe_layout(0, r.ray, r.hit, r.primitive, r.cost, r.bounds, r.instance, r.grid, r.params, r.camera,
+                    r.material, r.light, r.background, r.surface, reinterpret_cast<const char*>(input.memory.data()),
                     words.layout.data());
     std::uint64_t moved = 1;
     for (std::uint32_t round = 0; round < probe_barrier_rounds; ++round) moved += round + 2;

@@ -3,105 +3,188 @@
 #include "setka/tracer.hpp"
 
 #include <string>
+#include <tuple>
 
 #include "accel/world_geometry.hpp"
+#include "algo/scan.hpp"
 #include "core/launch.hpp"
 #include "setka/error.hpp"
 #include "setka/grid.hpp"
+#include "trace/hit_memory.hpp"
 
 namespace setka {
 
 namespace {
 
-void check_result(const char* name, std::size_t size, std::size_t rays) {
+void check_batch(std::size_t rays, std::size_t skipped) {
+    if (rays > (1u << 30))
+        throw Error(ErrorCategory::InvalidArgument, "rays has " + std::to_string(rays) + " elements; up to " +
+                                                        std::to_string(1u << 30) + " are accepted in one call");
+    if (skipped != 0 && skipped < rays)
+        throw Error(ErrorCategory::InvalidArgument, "skip has " + std::to_string(skipped) +
+                                                        " elements; none, or one for each of " +
+                                                        std::to_string(rays) + " rays, are accepted");
+}
+
+void check_result(const char* name, std::size_t size, const RayBatch& batch) {
+    const std::size_t rays = batch.rays.size();
     if (size < rays)
         throw Error(ErrorCategory::InvalidArgument, std::string(name) + " has " + std::to_string(size) +
                                                         " elements; one for each of " + std::to_string(rays) +
                                                         " rays is needed");
-    if (rays > (1u << 30))
-        throw Error(ErrorCategory::InvalidArgument, "rays has " + std::to_string(rays) + " elements; up to " +
-                                                        std::to_string(1u << 30) + " are accepted in one call");
+    check_batch(rays, batch.skip.size());
 }
 
-/// Grid kernels of one query: one for each step.
-struct GridKernels {
-    Kernel dda, branch_free;
+/// Kernels of one query: one for each structure and step.
+struct QueryKernels {
+    Kernel brute_force, grid_dda, grid_branch_free;
 };
 
-template <typename Result>
-void trace_grid(Queue& queue, const Grid& grid, const TraceOptions& options, const GridKernels& kernels,
-                const Buffer<Ray>& rays, const Buffer<Result>& results) {
-    const WorldGeometry& geometry = grid.geometry();
-    launch_items(queue, options.step == GridStep::Dda ? kernels.dda : kernels.branch_free,
-                 static_cast<std::uint32_t>(rays.size()), grid.header(), trace_params(geometry, options.mask), rays,
-                 results, grid.offsets(), grid.counts(), grid.references(), geometry.triangles,
-                 geometry.instance_starts, geometry.instances);
+constexpr QueryKernels closest_kernels{Kernel::trace_brute_closest, Kernel::trace_grid_closest_dda,
+                                       Kernel::trace_grid_closest_free};
+constexpr QueryKernels any_kernels{Kernel::trace_brute_any, Kernel::trace_grid_any_dda,
+                                   Kernel::trace_grid_any_free};
+constexpr QueryKernels count_kernels{Kernel::trace_brute_count, Kernel::trace_grid_count, Kernel::trace_grid_count};
+constexpr QueryKernels all_kernels{Kernel::trace_brute_all, Kernel::trace_grid_all, Kernel::trace_grid_all};
+
+/// What a query needs besides its batch and results. Kernels take, in this order: the number of rays and more plain values,
+/// the grid's header, the scene's parameters, rays, primitives to skip, what is particular to the query, the structure's tables.
+struct Query {
+    Queue& queue;
+    const Structure& structure;
+    const TraceOptions& options;
+
+    [[nodiscard]] sk_trace_params params(const RayBatch& batch) const {
+        sk_trace_params params = trace_params(structure.geometry(), options.mask);
+        params.skips = batch.skip.empty() ? 0 : 1;
+        return params;
+    }
+
+    /// `first` are values that come before all others.
+    template <typename... First, typename... Particular>
+    void launch(const QueryKernels& kernels, const RayBatch& batch, const std::tuple<First...>& first,
+                const Particular&... particular) const {
+        const auto n = static_cast<std::uint32_t>(batch.rays.size());
+        const WorldGeometry& geometry = structure.geometry();
+        const sk_trace_params scene = params(batch);
+        std::apply(
+            [&](const First&... values) {
+                if (structure.kind() == StructureKind::UniformGrid) {
+                    const auto& grid = static_cast<const Grid&>(structure);
+                    launch_items(queue,
+                                 options.step == GridStep::Dda ? kernels.grid_dda : kernels.grid_branch_free, n,
+                                 values..., grid.header(), scene, batch.rays, batch.skip, particular...,
+                                 grid.offsets(), grid.counts(), grid.references(), geometry.triangles,
+                                 geometry.instance_starts, geometry.instances);
+                } else {
+                    const auto& brute_force = static_cast<const BruteForce&>(structure);
+                    launch_items(queue, kernels.brute_force, n, values..., scene, batch.rays, batch.skip,
+                                 particular..., brute_force.packets(), geometry.instance_starts,
+                                 geometry.instances);
+                }
+            },
+            first);
+    }
+};
+
+}  // namespace
+
+void Tracer::closest_hit(Queue& queue, const Structure& structure, const RayBatch& batch,
+                         const Buffer<Hit>& hits) const {
+    check_result("hits", hits.size(), batch);
+    queue.impl().begin_stage("closest hit");
+    Query{queue, structure, options_}.launch(closest_kernels, batch, std::tuple(), hits);
 }
 
-template <typename Result>
-void trace_brute_force(Queue& queue, const BruteForce& structure, const TraceOptions& options, Kernel kernel,
-                       const Buffer<Ray>& rays, const Buffer<Result>& results) {
-    const WorldGeometry& geometry = structure.geometry();
-    launch_items(queue, kernel, static_cast<std::uint32_t>(rays.size()), trace_params(geometry, options.mask), rays,
-                 results, structure.packets(), geometry.instance_starts, geometry.instances);
+void Tracer::any_hit(Queue& queue, const Structure& structure, const RayBatch& batch,
+                     const Buffer<std::uint32_t>& occluded) const {
+    check_result("occluded", occluded.size(), batch);
+    queue.impl().begin_stage("any hit");
+    Query{queue, structure, options_}.launch(any_kernels, batch, std::tuple(), occluded);
+}
+
+void Tracer::closest_hit_cost(Queue& queue, const Structure& structure, const RayBatch& batch,
+                              const Buffer<TraceCost>& costs) const {
+    check_result("costs", costs.size(), batch);
+    queue.impl().begin_stage("cost");
+    if (structure.kind() == StructureKind::BruteForce) {
+        // Brute force visits no cell and tests everything.
+        const std::vector<TraceCost> cost(batch.rays.size(), {0, structure.geometry().triangle_count});
+        queue.upload(std::span<const TraceCost>(cost), costs);
+        return;
+    }
+    constexpr QueryKernels kernels{{}, Kernel::trace_grid_cost_dda, Kernel::trace_grid_cost_free};
+    Query{queue, structure, options_}.launch(kernels, batch, std::tuple(), costs);
+}
+
+void Tracer::count_hits(Queue& queue, const Structure& structure, const RayBatch& batch,
+                        const Buffer<std::uint32_t>& counts, const AllHitsOptions& options) const {
+    check_result("counts", counts.size(), batch);
+    queue.impl().begin_stage("count hits");
+    Query{queue, structure, options_}.launch(count_kernels, batch, std::tuple(options.max_hits), counts);
+}
+
+AllHits Tracer::all_hits(Queue& queue, const Structure& structure, const RayBatch& batch,
+                         const AllHitsOptions& options) const {
+    check_batch(batch.rays.size(), batch.skip.size());
+    const auto n = static_cast<std::uint32_t>(batch.rays.size());
+    AllHits result;
+    result.offsets = queue.make_buffer<std::uint32_t>(std::size_t(n) + 1, "hit offsets");
+    std::uint64_t total = 0;
+    {
+        const auto counts = queue.make_buffer<std::uint32_t>(n, "hit counts");
+        count_hits(queue, structure, batch, counts, options);
+        total = queue.download(enqueue_exclusive_scan(queue, counts, n, result.offsets)).back();
+    }
+    check_hit_memory(queue.device(), n, total);
+    result.hits = queue.make_buffer<Hit>(static_cast<std::size_t>(total), "hits");
+    queue.impl().begin_stage("all hits");
+    if (total != 0)
+        Query{queue, structure, options_}.launch(all_kernels, batch, std::tuple(), result.offsets, result.hits);
+    return result;
+}
+
+namespace {
+
+/// Rays and primitives of the host as a batch that uses their memory in place where it can.
+RayBatch wrap(Queue& queue, std::span<const Ray> rays, std::span<const Primitive> skip) {
+    check_batch(rays.size(), skip.size());
+    return {queue.wrap(rays, "rays"), queue.wrap(skip, "primitives to skip")};
 }
 
 }  // namespace
 
-void Tracer::closest_hit(Queue& queue, const Structure& structure, const Buffer<Ray>& rays,
-                         const Buffer<Hit>& hits) const {
-    check_result("hits", hits.size(), rays.size());
-    queue.impl().begin_stage("closest hit");
-    if (structure.kind() == StructureKind::UniformGrid)
-        trace_grid(queue, static_cast<const Grid&>(structure), options_,
-                   {Kernel::trace_grid_closest_dda, Kernel::trace_grid_closest_free}, rays, hits);
-    else
-        trace_brute_force(queue, static_cast<const BruteForce&>(structure), options_, Kernel::trace_brute_closest,
-                          rays, hits);
-}
-
-void Tracer::any_hit(Queue& queue, const Structure& structure, const Buffer<Ray>& rays,
-                     const Buffer<std::uint32_t>& occluded) const {
-    check_result("occluded", occluded.size(), rays.size());
-    queue.impl().begin_stage("any hit");
-    if (structure.kind() == StructureKind::UniformGrid)
-        trace_grid(queue, static_cast<const Grid&>(structure), options_,
-                   {Kernel::trace_grid_any_dda, Kernel::trace_grid_any_free}, rays, occluded);
-    else
-        trace_brute_force(queue, static_cast<const BruteForce&>(structure), options_, Kernel::trace_brute_any, rays,
-                          occluded);
-}
-
-void Tracer::closest_hit_cost(Queue& queue, const Structure& structure, const Buffer<Ray>& rays,
-                              const Buffer<TraceCost>& costs) const {
-    check_result("costs", costs.size(), rays.size());
-    queue.impl().begin_stage("cost");
-    if (structure.kind() == StructureKind::UniformGrid) {
-        trace_grid(queue, static_cast<const Grid&>(structure), options_,
-                   {Kernel::trace_grid_cost_dda, Kernel::trace_grid_cost_free}, rays, costs);
-    } else {
-        // Brute force visits no cell and tests everything.
-        const std::vector<TraceCost> cost(rays.size(), {0, structure.geometry().triangle_count});
-        queue.upload(std::span<const TraceCost>(cost), costs);
-    }
-}
-
-std::vector<Hit> Tracer::closest_hit(Queue& queue, const Structure& structure, std::span<const Ray> rays) const {
+std::vector<Hit> Tracer::closest_hit(Queue& queue, const Structure& structure, std::span<const Ray> rays,
+                                     std::span<const Primitive> skip) const {
     std::vector<Hit> hits(rays.size());
-    const auto device_rays = queue.wrap(rays, "rays");
     const auto device_hits = queue.wrap(std::span(hits), "hits");
-    closest_hit(queue, structure, device_rays, device_hits);
+    closest_hit(queue, structure, wrap(queue, rays, skip), device_hits);
     queue.download(device_hits, std::span(hits));
     return hits;
 }
 
-std::vector<std::uint32_t> Tracer::any_hit(Queue& queue, const Structure& structure, std::span<const Ray> rays) const {
+std::vector<std::uint32_t> Tracer::any_hit(Queue& queue, const Structure& structure, std::span<const Ray> rays,
+                                           std::span<const Primitive> skip) const {
     std::vector<std::uint32_t> occluded(rays.size());
-    const auto device_rays = queue.wrap(rays, "rays");
     const auto device_occluded = queue.wrap(std::span(occluded), "occluded");
-    any_hit(queue, structure, device_rays, device_occluded);
+    any_hit(queue, structure, wrap(queue, rays, skip), device_occluded);
     queue.download(device_occluded, std::span(occluded));
     return occluded;
+}
+
+std::vector<std::uint32_t> Tracer::count_hits(Queue& queue, const Structure& structure, std::span<const Ray> rays,
+                                              const AllHitsOptions& options, std::span<const Primitive> skip) const {
+    std::vector<std::uint32_t> counts(rays.size());
+    const auto device_counts = queue.wrap(std::span(counts), "hit counts");
+    count_hits(queue, structure, wrap(queue, rays, skip), device_counts, options);
+    queue.download(device_counts, std::span(counts));
+    return counts;
+}
+
+HitLists Tracer::all_hits(Queue& queue, const Structure& structure, std::span<const Ray> rays,
+                          const AllHitsOptions& options, std::span<const Primitive> skip) const {
+    const AllHits all = all_hits(queue, structure, wrap(queue, rays, skip), options);
+    return {queue.download(all.offsets), queue.download(all.hits)};
 }
 
 }  // namespace setka

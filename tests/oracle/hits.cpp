@@ -211,7 +211,38 @@ Hit closest_hit(const World& world, const Ray& ray, std::uint32_t mask) {
     return hit;
 }
 
+/// Section "All hits".
+std::vector<Hit> all_hits(const World& world, const Ray& ray, std::uint32_t mask, const Primitive& skip) {
+    const WorkingRay work = prepare(world, ray);
+    std::vector<std::pair<float, Hit>> found;  // by w
+    if (!work.misses)
+        for (const WorldTriangle& triangle : world.triangles) {
+            const bool is_skipped =
+                triangle.primitive == skip.primitive && triangle.instance == skip.instance;
+            if (!(triangle.mask & mask) || is_skipped) continue;
+            const Candidate candidate = test(work, triangle);
+            if (candidate.accepted)
+                found.push_back({candidate.w,
+                                 {candidate.t, candidate.u, candidate.v, triangle.primitive, triangle.instance}});
+        }
+    // They come by number, and those of equal w stay so.
+    std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<Hit> hits;
+    for (const auto& [w, hit] : found) hits.push_back(hit);
+    return hits;
+}
+
 }  // namespace
+
+std::vector<std::vector<Hit>> all_hits(const World& world, std::span<const Ray> rays, std::span<const Primitive> skip,
+                                       std::uint32_t mask) {
+    std::vector<std::vector<Hit>> hits;
+    hits.reserve(rays.size());
+    for (std::size_t i = 0; i < rays.size(); ++i)
+        hits.push_back(
+            all_hits(world, rays[i], mask, skip.empty() ? Primitive{SETKA_NO_HIT, SETKA_NO_HIT} : skip[i]));
+    return hits;
+}
 
 std::vector<Hit> closest_hits(const World& world, std::span<const Ray> rays, std::uint32_t mask) {
     std::vector<Hit> hits;

@@ -19,6 +19,7 @@ using setka::Bounds;
 using setka::GridOptions;
 using setka::GridResolution;
 using setka::Hit;
+using setka::Primitive;
 using setka::Ray;
 using setka::Scene;
 
@@ -83,6 +84,11 @@ using Pair = std::uint64_t;
 /// `mask`.
 [[nodiscard]] std::vector<Hit> closest_hits(const World& world, std::span<const Ray> rays,
                                             std::uint32_t mask = ~SETKA_MASK_OPAQUE);
+
+/// Section "All hits": those of each ray, without the triangle skip[i]; an empty `skip` leaves none out.
+[[nodiscard]] std::vector<std::vector<Hit>> all_hits(const World& world, std::span<const Ray> rays,
+                                                     std::span<const Primitive> skip = {},
+                                                     std::uint32_t mask = ~SETKA_MASK_OPAQUE);
 
 /// A hit calculated another way (Moeller & Trumbore 1997, in double precision), to judge by tolerance.
 struct RoughHit {

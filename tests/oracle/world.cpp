@@ -29,8 +29,8 @@ World make_world(const Scene& scene) {
         const setka::Instance& instance = scene.instances[i];
         const setka::Mesh& mesh = scene.meshes[instance.mesh];
         const bool is_opaque = !(scene.materials[instance.material].transparency > 0);
-        const std::uint32_t mask =
-            (instance.mask & ~SETKA_MASK_OPAQUE) | (is_opaque ? SETKA_MASK_OPAQUE : 0u);
+        const std::uint32_t own = instance.mask & ~SETKA_MASK_OPAQUE;
+        const std::uint32_t mask = own != 0 && is_opaque ? own | SETKA_MASK_OPAQUE : own;
         for (std::uint32_t k = 0; k < mesh.triangles.size(); ++k) {
             const auto [a, b, c] = mesh.triangles[k];
             const auto& rows = instance.transform.rows;

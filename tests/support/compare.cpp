@@ -197,6 +197,41 @@ AssertionResult same_hits(std::span<const oracle::Ray> rays, std::span<const ora
                               << describe(expected[first]) << "\n  actual   " << describe(actual[first]);
 }
 
+setka::HitLists as_lists(const std::vector<std::vector<oracle::Hit>>& hits, std::size_t most) {
+    setka::HitLists lists;
+    for (const auto& list : hits) {
+        lists.hits.insert(lists.hits.end(), list.begin(),
+                          list.begin() + static_cast<std::ptrdiff_t>(std::min(most, list.size())));
+        lists.offsets.push_back(static_cast<std::uint32_t>(lists.hits.size()));
+    }
+    return lists;
+}
+
+AssertionResult same_lists(std::span<const oracle::Ray> rays, const setka::HitLists& expected,
+                           const setka::HitLists& actual) {
+    for (const setka::HitLists* lists : {&expected, &actual}) {
+        if (lists->ray_count() != rays.size() || lists->offsets.front() != 0 ||
+            lists->offsets.back() != lists->hits.size() || !std::ranges::is_sorted(lists->offsets))
+            return AssertionFailure() << rays.size() << " rays; " << (lists == &actual ? "actual" : "expected")
+                                      << " lists of " << lists->ray_count() << " rays, " << lists->hits.size()
+                                      << " hits, offsets " << lists->offsets.front() << " to "
+                                      << lists->offsets.back();
+    }
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const auto a = expected[i], b = actual[i];
+        if (a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0)) continue;
+        std::size_t k = 0;
+        while (k < std::min(a.size(), b.size()) && std::memcmp(&a[k], &b[k], sizeof(oracle::Hit)) == 0) ++k;
+        const auto hit_of = [&](std::span<const oracle::Hit> hits) {
+            return k < hits.size() ? describe(hits[k]) : std::string("none");
+        };
+        return AssertionFailure() << "hits of " << ray_name(i) << ": expected " << a.size() << ", actual "
+                                  << b.size() << "; hit " << k << " differs\n  " << describe(rays[i])
+                                  << "\n  expected " << hit_of(a) << "\n  actual   " << hit_of(b);
+    }
+    return AssertionSuccess();
+}
+
 AssertionResult same_occlusion(std::span<const oracle::Ray> rays, std::span<const oracle::Hit> hits,
                                std::span<const std::uint32_t> occluded) {
     if (hits.size() != rays.size() || occluded.size() != rays.size())

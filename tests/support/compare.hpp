@@ -34,6 +34,15 @@ namespace support {
                                                    std::span<const oracle::Hit> expected,
                                                    std::span<const oracle::Hit> actual);
 
+/// Lists of hits bit for bit; else the first ray whose list differs, with the first hit in it that does.
+[[nodiscard]] ::testing::AssertionResult same_lists(std::span<const oracle::Ray> rays,
+                                                    const setka::HitLists& expected,
+                                                    const setka::HitLists& actual);
+
+/// The oracle's lists as the library returns them, each of at most `most` hits.
+[[nodiscard]] setka::HitLists as_lists(const std::vector<std::vector<oracle::Hit>>& hits,
+                                       std::size_t most = ~std::size_t{0});
+
 /// occluded[i] is 1 if hits[i] is a hit, else 0.
 [[nodiscard]] ::testing::AssertionResult same_occlusion(std::span<const oracle::Ray> rays,
                                                         std::span<const oracle::Hit> hits,

@@ -3,6 +3,7 @@
 /// missing does not compile.
 #include "backend/cuda/kernel_table.hpp"
 
+#include "all_hits.cu"
 #include "grid.cu"
 #include "probe.cu"
 #include "reduce.cu"

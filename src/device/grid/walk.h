@@ -76,14 +76,14 @@ SK_FUNCTION sk_span sk_limit(sk_working_ray ray) {
 }
 
 /**
- * Walks the grid. `branch_free` and `any` are compile-time choices of the entry: the paper's step, and to stop at the first
+ * Walks the grid, past the triangle `skip`. `branch_free` and `any` are compile-time choices of the entry: the paper's step, and to stop at the first
  * hit. The loop ends: each turn at least one index moves towards its last value, where its exit is out of reach.
  */
 SK_FUNCTION sk_walk sk_walk_grid(SetkaGridHeader grid, sk_trace_params params, sk_working_ray ray,
                                  SK_GLOBAL const sk_i32* offsets, SK_GLOBAL const sk_u32* counts,
                                  SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
                                  SK_GLOBAL const sk_u32* instance_starts, SK_GLOBAL const SetkaInstance* instances,
-                                 const int branch_free, const int any) {
+                                 sk_u32 skip, const int branch_free, const int any) {
     const sk_span span = sk_limit(ray);
     const sk_vec3 o = sk_to_cells(grid, ray.o), d = sk_scale(ray.d, grid.inverse_cell_size);
     sk_axis x = sk_make_axis(o.x, d.x, ray.d.x, span.w0, grid.dims[0]);
@@ -103,7 +103,8 @@ SK_FUNCTION sk_walk sk_walk_grid(SetkaGridHeader grid, sk_trace_params params, s
             for (sk_u32 k = 0u; k < count; ++k) {
                 const sk_u32 number = references[(sk_u32)offset + k];
                 const sk_best next = sk_test_triangle(ray, triangles + (size_t)number * 9u, 1u, number, r.best);
-                if (next.triangle != r.best.triangle && sk_is_visible(params, instance_starts, instances, number))
+                if (next.triangle != r.best.triangle && number != skip &&
+                    sk_is_visible(params, instance_starts, instances, number))
                     r.best = next;
             }
             r.cost.tests += count;

@@ -96,9 +96,9 @@ SK_PROBE_RECORDS(SK_ECHO_FUNCTION)
 #undef SK_ECHO_FUNCTION
 
 /** Fills the slot of each record in words[first ..]; `memory` holds as many slots. */
-SK_FUNCTION void sk_probe_layout(sk_u32 first, SetkaRay ray, SetkaHit hit, SetkaTraceCost cost,
-                                 SetkaBounds bounds, SetkaInstance instance, SetkaGridHeader grid,
-                                 sk_trace_params params, SkCamera camera, SkMaterial material, SkLight light,
+SK_FUNCTION void sk_probe_layout(sk_u32 first, SetkaRay ray, SetkaHit hit, SetkaPrimitive primitive,
+                                 SetkaTraceCost cost, SetkaBounds bounds, SetkaInstance instance,
+                                 SetkaGridHeader grid, sk_trace_params params, SkCamera camera, SkMaterial material, SkLight light,
                                  SkBackground background, SkSurfacePoint surface,
                                  SK_GLOBAL const char* memory, SK_GLOBAL sk_u32* words) {
     sk_u32 start = first;

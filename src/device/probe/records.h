@@ -17,6 +17,7 @@
 
 #define SK_MEMBERS_RAY(F, U) SK_PROBE_THREE(F, origin) F(tmin) SK_PROBE_THREE(F, direction) F(tmax)
 #define SK_MEMBERS_HIT(F, U) F(t) F(u) F(v) U(primitive) U(instance)
+#define SK_MEMBERS_PRIMITIVE(F, U) U(primitive) U(instance)
 #define SK_MEMBERS_COST(F, U) U(steps) U(tests)
 #define SK_MEMBERS_BOUNDS(F, U) SK_PROBE_THREE(F, lower) SK_PROBE_THREE(F, upper)
 #define SK_MEMBERS_INSTANCE(F, U)                                                                   \
@@ -28,7 +29,7 @@
     F(extent) U(reserved[0]) U(reserved[1])
 #define SK_MEMBERS_PARAMS(F, U)                                                                     \
     SK_PROBE_THREE(F, lower) SK_PROBE_THREE(F, size) F(extent) F(pad) F(unit)                       \
-    U(mask) U(filters) U(instance_count) U(triangle_count)
+    U(mask) U(filters) U(skips) U(instance_count) U(triangle_count)
 #define SK_MEMBERS_CAMERA(F, U)                                                                     \
     SK_PROBE_THREE(F, eye) F(step_x) SK_PROBE_THREE(F, right) F(step_y)                             \
     SK_PROBE_THREE(F, up) U(width) SK_PROBE_THREE(F, forward) U(samples_per_axis)
@@ -47,6 +48,7 @@
 #define SK_PROBE_RECORDS(R)                                                                         \
     R(SetkaRay, ray, SK_MEMBERS_RAY)                                                                \
     R(SetkaHit, hit, SK_MEMBERS_HIT)                                                                \
+    R(SetkaPrimitive, primitive, SK_MEMBERS_PRIMITIVE)                                              \
     R(SetkaTraceCost, cost, SK_MEMBERS_COST)                                                        \
     R(SetkaBounds, bounds, SK_MEMBERS_BOUNDS)                                                       \
     R(SetkaInstance, instance, SK_MEMBERS_INSTANCE)                                                 \

@@ -7,6 +7,7 @@
 #ifndef SETKA_DEVICE_TRACE_BRUTE_H
 #define SETKA_DEVICE_TRACE_BRUTE_H
 
+#include "device/trace/hit_list.h"
 #include "device/trace/triangle.h"
 
 #define SK_LANES 16u
@@ -41,11 +42,15 @@ SK_FUNCTION sk_u32 sk_packet_candidates(sk_working_ray ray, SK_GLOBAL const floa
     return any;
 }
 
-/** The closest hit over all triangles; with `any` not 0 the first that is found. */
+SK_FUNCTION sk_u32 sk_packet_count(sk_trace_params params) {
+    return params.triangle_count / SK_LANES + (params.triangle_count % SK_LANES != 0u);
+}
+
+/** The closest hit over all triangles but `skip`; with `any` not 0 the first that is found. */
 SK_FUNCTION sk_best sk_brute_force(sk_trace_params params, sk_working_ray ray, SK_GLOBAL const float* packets,
                                    SK_GLOBAL const sk_u32* instance_starts, SK_GLOBAL const SetkaInstance* instances,
-                                   const int any) {
-    const sk_u32 packet_count = ray.valid ? params.triangle_count / SK_LANES + (params.triangle_count % SK_LANES != 0u) : 0u;
+                                   sk_u32 skip, const int any) {
+    const sk_u32 packet_count = ray.valid ? sk_packet_count(params) : 0u;
     sk_best best = sk_no_hit();
     for (sk_u32 p = 0u; p < packet_count; ++p) {
         SK_GLOBAL const float* packet = packets + (size_t)p * 9u * SK_LANES;
@@ -54,7 +59,7 @@ SK_FUNCTION sk_best sk_brute_force(sk_trace_params params, sk_working_ray ray, S
                 const sk_u32 number = p * SK_LANES + k;
                 if (number < params.triangle_count) {
                     const sk_best next = sk_test_triangle(ray, packet + k, SK_LANES, number, best);
-                    if (next.triangle != best.triangle &&
+                    if (next.triangle != best.triangle && number != skip &&
                         sk_is_visible(params, instance_starts, instances, number))
                         best = next;
                 }
@@ -62,6 +67,33 @@ SK_FUNCTION sk_best sk_brute_force(sk_trace_params params, sk_working_ray ray, S
         if (any && best.triangle != SETKA_NO_HIT) break;
     }
     return best;
+}
+
+/**
+ * The number of hits over all triangles but `skip`, up to `most`. With `write` not 0 hits[0 .. number) become the first of
+ * them, in order, as records of hit_list.h.
+ */
+SK_FUNCTION sk_u32 sk_brute_force_all(sk_trace_params params, sk_working_ray ray, SK_GLOBAL const float* packets,
+                                      SK_GLOBAL const sk_u32* instance_starts,
+                                      SK_GLOBAL const SetkaInstance* instances, sk_u32 skip,
+                                      SK_GLOBAL SetkaHit* hits, sk_u32 most, const int write) {
+    const sk_u32 packet_count = ray.valid && most != 0u ? sk_packet_count(params) : 0u;
+    sk_u32 found = 0u;
+    for (sk_u32 p = 0u; p < packet_count && (write || found < most); ++p) {
+        SK_GLOBAL const float* packet = packets + (size_t)p * 9u * SK_LANES;
+        if (sk_packet_candidates(ray, packet) != 0u)
+            for (sk_u32 k = 0u; k < SK_LANES; ++k) {
+                const sk_u32 number = p * SK_LANES + k;
+                if (number < params.triangle_count) {
+                    const sk_best hit = sk_test_triangle(ray, packet + k, SK_LANES, number, sk_no_hit());
+                    if (hit.triangle != SETKA_NO_HIT && number != skip &&
+                        sk_is_visible(params, instance_starts, instances, number))
+                        found = write ? sk_list_hit(hits, found, most, hit) : found + 1u;
+                }
+            }
+    }
+    if (write) sk_sort_hits(hits, found);
+    return sk_min_u32(found, most);
 }
 
 #endif

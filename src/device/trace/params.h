@@ -13,6 +13,7 @@ typedef struct sk_trace_params {
     float unit;               /* a power of two: extent * unit is in [2^20, 2^21), if extent is in [2^-100, 2^100] */
     setka_u32 mask;           /* of the query */
     setka_u32 filters;        /* 0: the mask lets every instance through */
+    setka_u32 skips;          /* not 0: each ray has a primitive that it passes through */
     setka_u32 instance_count;
     setka_u32 triangle_count;
 } sk_trace_params;

@@ -125,6 +125,20 @@ SK_FUNCTION int sk_is_visible(sk_trace_params params, SK_GLOBAL const sk_u32* in
     return visible;
 }
 
+/** The scene triangle that ray i passes through, or SETKA_NO_HIT: what names no triangle of the scene skips nothing. */
+SK_FUNCTION sk_u32 sk_skipped_triangle(sk_trace_params params, SK_GLOBAL const sk_u32* instance_starts,
+                                       SK_GLOBAL const SetkaPrimitive* skip, sk_u32 i) {
+    sk_u32 triangle = SETKA_NO_HIT;
+    if (params.skips != 0u) {
+        const sk_u32 instance = skip[i].instance, primitive = skip[i].primitive;
+        if (instance < params.instance_count) {
+            const sk_u32 first = instance_starts[instance];
+            if (primitive < instance_starts[instance + 1u] - first) triangle = first + primitive;
+        }
+    }
+    return triangle;
+}
+
 SK_FUNCTION sk_best sk_no_hit(void) {
     sk_best r;
     r.w = 3e38f;

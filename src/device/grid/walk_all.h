@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * Which triangles of the grid does a ray hit, each once and in order? A walk in which each cell owns the hits between the
+ * parameters at which the ray leaves the cell before it and the cell itself. Exits never decrease, so that intervals follow each
+ * other without gap or overlap: a triangle in several lists counts in one cell only, without a memory of those that were tested.
+ * src/README.md ("All hits") has the argument why the owner's list holds it.
+ */
+#ifndef SETKA_DEVICE_GRID_WALK_ALL_H
+#define SETKA_DEVICE_GRID_WALK_ALL_H
+
+#include "device/grid/walk.h"
+#include "device/trace/hit_list.h"
+
+/**
+ * The number of hits of all triangles but `skip`, up to `most`. With `write` not 0, a compile-time choice of the entry,
+ * hits[0 .. number) become the first of them, in order, as records of hit_list.h. Later cells own later hits only, so each
+ * cell's are ordered for themselves, and the walk ends with the cell that has the last one wanted.
+ */
+SK_FUNCTION sk_u32 sk_walk_grid_all(SetkaGridHeader grid, sk_trace_params params, sk_working_ray ray,
+                                    SK_GLOBAL const sk_i32* offsets, SK_GLOBAL const sk_u32* counts,
+                                    SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
+                                    SK_GLOBAL const sk_u32* instance_starts,
+                                    SK_GLOBAL const SetkaInstance* instances, sk_u32 skip,
+                                    SK_GLOBAL SetkaHit* hits, sk_u32 most, const int write) {
+    const sk_span span = sk_limit(ray);
+    const sk_vec3 o = sk_to_cells(grid, ray.o), d = sk_scale(ray.d, grid.inverse_cell_size);
+    sk_axis x = sk_make_axis(o.x, d.x, ray.d.x, span.w0, grid.dims[0]);
+    sk_axis y = sk_make_axis(o.y, d.y, ray.d.y, span.w0, grid.dims[1]);
+    sk_axis z = sk_make_axis(o.z, d.z, ray.d.z, span.w0, grid.dims[2]);
+    int walking = span.meets && most != 0u;
+    sk_u32 found = 0u;
+    float w_in = sk_bits_float(0xff800000u); /* the first cell owns whatever is before it */
+    while (walking) {
+        const sk_u32 cell = (z.index * grid.dims[1] + y.index) * grid.dims[0] + x.index;
+        const sk_i32 offset = offsets[cell];
+        const float wx = sk_exit(x) * x.inverse, wy = sk_exit(y) * y.inverse, wz = sk_exit(z) * z.inverse;
+        const float w_out = sk_min(wx, sk_min(wy, wz));
+        const int is_last = span.w1 <= w_out; /* and owns whatever is behind it */
+        if (offset >= 0 && (w_in < w_out || is_last)) {
+            const sk_u32 count = counts[cell], before = found;
+            for (sk_u32 k = 0u; k < count; ++k) {
+                const sk_u32 number = references[(sk_u32)offset + k];
+                const sk_best hit = sk_test_triangle(ray, triangles + (size_t)number * 9u, 1u, number, sk_no_hit());
+                if (hit.triangle != SETKA_NO_HIT && hit.w > w_in && (hit.w <= w_out || is_last) && number != skip &&
+                    sk_is_visible(params, instance_starts, instances, number))
+                    found = write ? before + sk_list_hit(hits + before, found - before, most - before, hit)
+                                  : found + 1u;
+            }
+            if (write) sk_sort_hits(hits + before, found - before);
+        }
+        w_in = w_out;
+        if (is_last || found >= most) {
+            walking = 0;
+        } else if (wx <= wy && wx <= wz) {
+            x.index = sk_advance(x, 1u);
+        } else if (wy <= wz) {
+            y.index = sk_advance(y, 1u);
+        } else {
+            z.index = sk_advance(z, 1u);
+        }
+    }
+    return sk_min_u32(found, most);
+}
+
+#endif
