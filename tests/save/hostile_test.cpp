@@ -321,7 +321,8 @@ void walk(const Model& model, std::span<const setka::Ray> rays) {
                 const sk_walk walk =
                     sk_walk_grid(model.header, params, working, model.offsets.data(), model.counts.data(),
                                  model.references.data(), model.triangles.data(),
-                                 model.instance_starts.data(), model.instances.data(), branch_free, 0);
+                                 model.instance_starts.data(), model.instances.data(), SETKA_NO_HIT,
+                                 branch_free, 0);
                 const SetkaHit hit = sk_make_hit(params, working, model.instance_starts.data(), walk.best);
                 ASSERT_LE(walk.cost.steps,
                           model.header.dims[0] + model.header.dims[1] + model.header.dims[2]);
