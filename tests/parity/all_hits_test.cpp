@@ -26,10 +26,13 @@ constexpr std::uint32_t few[] = {1, 2, 3, 7};
 
 /// Every structure of a scene that hits are asked of.
 struct Structures {
-    Structures(setka::Queue& queue, const setka::Scene& scene)
+    /// In a pile every triangle reaches into every cell: there, few cells will do.
+    Structures(setka::Queue& queue, const setka::Scene& scene, std::uint32_t most_cells_per_axis = 2048)
         : device_scene(queue, scene), brute(setka::BruteForce::build(queue, device_scene)) {
         for (const float density : densities)
-            grids.push_back(setka::make_grid_builder({.density = density})->build(queue, device_scene));
+            grids.push_back(
+                setka::make_grid_builder({.density = density, .max_cells_per_axis = most_cells_per_axis})
+                    ->build(queue, device_scene));
         all.emplace_back("brute force", &brute);
         for (std::size_t k = 0; k < grids.size(); ++k)
             all.emplace_back("grid of density " + std::to_string(densities[k]), &grids[k]);
@@ -202,7 +205,7 @@ setka::Ray down_from(float x, float y, float z) {
 TEST_P(Lists, OfFiveThousandHitsAtOnePlaceGoByNumber) {
     constexpr std::uint32_t count = 5000;
     setka::Queue queue = device().make_queue();
-    const Structures structures(queue, pile(std::vector<float>(count, 0)));
+    const Structures structures(queue, pile(std::vector<float>(count, 0)), 32);
     const std::vector<setka::Ray> rays{down_from(0.25f, 0.25f, 1), down_from(0.5f, 0.125f, 3)};
     for (const auto& [name, structure] : structures.all)
         for (const std::uint32_t most : {1u, 2u, 7u, 4999u, 5000u, 5001u}) {
@@ -224,7 +227,7 @@ TEST_P(Lists, OfAPileAreSorted) {
     std::vector<float> heights;
     for (int k = 0; k < 3000; ++k) heights.push_back(static_cast<float>(random.below(1000)) / 64);
     setka::Queue queue = device().make_queue();
-    const Structures structures(queue, pile(heights));
+    const Structures structures(queue, pile(heights), 32);
     const std::vector<setka::Ray> rays{down_from(0.25f, 0.25f, 16)};
     std::vector<std::pair<float, std::uint32_t>> expected;
     for (std::uint32_t k = 0; k < heights.size(); ++k) expected.emplace_back(16 - heights[k], k);
