@@ -30,6 +30,7 @@ class Pool {
     }
 
     [[nodiscard]] std::optional<Handle> take(std::uint64_t size_bytes) {
+        if (!settings().pooling) return std::nullopt;  // what was given back stays apart, as a checker's quarantine
         const std::scoped_lock lock(mutex_);
         const auto it = free_.find(size_bytes);
         if (it == free_.end()) return std::nullopt;
@@ -40,7 +41,6 @@ class Pool {
     }
 
     void give(std::uint64_t size_bytes, Handle handle) noexcept {
-        if (!settings().pooling) return;
         const std::scoped_lock lock(mutex_);
         try {
             free_.emplace(size_bytes, std::move(handle));

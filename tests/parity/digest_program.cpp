@@ -152,7 +152,9 @@ void run(const std::string& mode, const std::string& id) {
     if (mode == "ordinary") return print_ordinary(id);
     if (mode != "small" && mode != "tiny")
         throw std::invalid_argument("mode is '" + mode + "'; ordinary, small, tiny and devices are accepted");
-    for (const char* shape : {"defaults", "Group_32"}) AllKernels(id, shape, mode == "tiny" ? tiny : small).print();
+    std::vector<AllKernels> shapes;  // their queues live to the end: Oclgrind confuses a buffer with an earlier one
+    for (const char* shape : {"defaults", "Group_32"})
+        shapes.emplace_back(id, shape, mode == "tiny" ? tiny : small).print();
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "support/rays.hpp"
 #include "support/scenes.hpp"
 #include "support/shapes.hpp"
+#include "support/sizes.hpp"
 
 namespace {
 
@@ -35,7 +36,7 @@ SETKA_ON_EVERY_DEVICE_AND(Hits, support::names(support::all_scenes()));
 TEST_P(Hits, OfBruteForceEqualTheOracles) {
     const setka::Scene host_scene = scene();
     const oracle::World world = oracle::make_world(host_scene);
-    const auto rays = support::adversarial_rays(world, 6000, 41);
+    const auto rays = support::adversarial_rays(world, support::sized(6000, 300), 41);
     const auto expected = oracle::closest_hits(world, rays);
     for (const support::LaunchShape& shape :
          support::launch_shapes_of(std::get<0>(GetParam()), {"defaults", "Serial_1", "Group_256"})) {
@@ -51,7 +52,7 @@ TEST_P(Hits, OfBruteForceEqualTheOracles) {
 TEST_P(Hits, OfGridsEqualThoseOfBruteForce) {
     const setka::Scene host_scene = scene();
     const oracle::World world = oracle::make_world(host_scene);
-    const auto rays = support::adversarial_rays(world, 100000, 42);
+    const auto rays = support::adversarial_rays(world, support::sized(100000, 1000), 42);
     setka::Queue queue = device().make_queue();
     const setka::DeviceScene device_scene(queue, host_scene);
     const auto brute = setka::BruteForce::build(queue, device_scene);

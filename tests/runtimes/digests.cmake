@@ -17,7 +17,9 @@ runtime_check_devices(${PROGRAM})
 set(log ${WORK}/oclgrind_digests.log)
 if(RUNTIME STREQUAL "oclgrind")
     file(REMOVE ${log})
-    list(APPEND runtime_environment OCLGRIND_LOG=${log} SETKA_LOG=launch)
+    # Oclgrind 21.10 takes the first transfer into a buffer, or into an earlier one of the same number, for the extent of what it
+    # tracks, and calls the rest uninitialised. So this is asked for here alone, where buffers are written whole and not reused.
+    list(APPEND runtime_environment OCLGRIND_LOG=${log} OCLGRIND_UNINITIALIZED=1 SETKA_LOG=launch)
 endif()
 runtime_run(${PROGRAM} ${MODE})
 if(NOT result EQUAL 0)

@@ -21,7 +21,7 @@ if(NOT wheel_library AND NOT "$ENV{SETKA_FETCH_RUNTIMES}" STREQUAL "1")
     set(runtime_missing_why "not downloaded; SETKA_FETCH_RUNTIMES=1 gets ${wheel_packages} from the Python package index")
 elseif(NOT wheel_library)
     file(REMOVE_RECURSE ${wheel_folder})
-    execute_process(COMMAND python3 -m pip download --quiet --no-deps --only-binary :all: --dest ${wheel_folder}
+    execute_process(COMMAND python3 -m pip download --quiet --retries 1 --timeout 30 --no-deps --only-binary :all: --dest ${wheel_folder}
                             ${wheel_packages}
                     RESULT_VARIABLE result ERROR_VARIABLE error OUTPUT_VARIABLE error TIMEOUT 300)
     if(result EQUAL 0)

@@ -85,6 +85,9 @@ setka::Device open_once(const std::string& id, const setka::DeviceOptions& optio
 }
 
 std::string obstacle(const std::string& id, const setka::DeviceOptions& options) {
+    static std::map<std::tuple<std::string, std::uint32_t, setka::PrimitiveShape>, std::string> refused;
+    const auto found = refused.find({id, options.work_group_size, options.primitives});
+    if (found != refused.end()) return found->second;
     try {
         (void)open_once(id, options);
         return "";
@@ -93,7 +96,7 @@ std::string obstacle(const std::string& id, const setka::DeviceOptions& options)
         const std::uint32_t usual = device.info().type == setka::DeviceType::Cpu ? 64 : 128;
         if (error.category() != setka::ErrorCategory::InvalidArgument || device.options().work_group_size >= usual)
             throw;
-        return error.what();
+        return refused[{id, options.work_group_size, options.primitives}] = error.what();
     }
 }
 
