@@ -64,6 +64,18 @@ TEST_P(Sort, EqualsTheStandardOne) {
     }
 }
 
+/// The most elements a work-item: some drivers end one silently after 65,535 turns of all its loops.
+TEST_P(Sort, OfTheLongestRuns) {
+    if (shaped_device().options().primitives != setka::PrimitiveShape::Serial)
+        GTEST_SKIP() << "runs are long in shape Serial alone";
+    setka::Queue queue = shaped_device().make_queue();
+    const std::uint32_t size = support::sized(1u << 21, 1u << 13);
+    support::Random random(4);
+    Words keys(size);
+    for (auto& key : keys) key = static_cast<std::uint32_t>(random.bits()) & 0x7ffu;
+    EXPECT_TRUE(sorts(queue, keys, count_up(size), 11));
+}
+
 TEST_P(Sort, UnevenKeys) {
     setka::Queue queue = shaped_device().make_queue();
     const std::uint32_t size = support::sized(20011u, 211u);

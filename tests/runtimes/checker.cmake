@@ -1,0 +1,16 @@
+# SPDX-License-Identifier: MIT
+# Does Oclgrind see a race and an uninitialised read? Runs FLAWED, which has both; that it keeps quiet elsewhere says nothing else.
+cmake_minimum_required(VERSION 3.22)
+include(${CMAKE_CURRENT_LIST_DIR}/runtime.cmake)
+if(runtime_missing_why)
+    runtime_missing("${runtime_missing_why}")
+endif()
+runtime_run(OCLGRIND_UNINITIALIZED=1 ${FLAWED})
+if(NOT result EQUAL 0)
+    message(FATAL_ERROR "${FLAWED} failed: ${result}\n${output}${error}")
+endif()
+foreach(flaw "data race at local memory" "uninitialized value")
+    if(NOT error MATCHES "${flaw}")
+        message(FATAL_ERROR "Oclgrind does not report the ${flaw}:\n${error}")
+    endif()
+endforeach()
