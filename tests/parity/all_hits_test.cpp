@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Are all hits of a ray there, each once and in order, whatever finds them? Those of a device against the oracle's, those of
-/// grids against brute force, bit for bit; and counts, first hits and skipped triangles against the full lists.
+/// Are all hits of a ray there, each once and in order, whatever finds them? Those of a device against the
+/// oracle's, those of grids against brute force, bit for bit; and counts, first hits and skipped triangles
+/// against the full lists.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -21,18 +22,16 @@ namespace {
 using setka::HitLists;
 using setka::Primitive;
 
-constexpr float densities[] = {0.5f, 4.0f, 64.0f};
+const std::vector<float> usual_densities{0.5f, 4.0f, 64.0f};
 constexpr std::uint32_t few[] = {1, 2, 3, 7};
 
 /// Every structure of a scene that hits are asked of.
 struct Structures {
-    /// In a pile every triangle reaches into every cell: there, few cells will do.
-    Structures(setka::Queue& queue, const setka::Scene& scene, std::uint32_t most_cells_per_axis = 2048)
+    Structures(setka::Queue& queue, const setka::Scene& scene,
+               const std::vector<float>& densities = usual_densities)
         : device_scene(queue, scene), brute(setka::BruteForce::build(queue, device_scene)) {
         for (const float density : densities)
-            grids.push_back(
-                setka::make_grid_builder({.density = density, .max_cells_per_axis = most_cells_per_axis})
-                    ->build(queue, device_scene));
+            grids.push_back(setka::make_grid_builder({.density = density})->build(queue, device_scene));
         all.emplace_back("brute force", &brute);
         for (std::size_t k = 0; k < grids.size(); ++k)
             all.emplace_back("grid of density " + std::to_string(densities[k]), &grids[k]);
@@ -56,8 +55,8 @@ HitLists first_of(const HitLists& lists, std::size_t most) {
 std::vector<setka::Hit> closest_of(const HitLists& lists) {
     std::vector<setka::Hit> hits;
     for (std::size_t i = 0; i < lists.ray_count(); ++i)
-        hits.push_back(lists[i].empty() ? setka::Hit{std::numeric_limits<float>::infinity(), 0, 0, SETKA_NO_HIT,
-                                                     SETKA_NO_HIT}
+        hits.push_back(lists[i].empty() ? setka::Hit{std::numeric_limits<float>::infinity(), 0, 0,
+                                                     SETKA_NO_HIT, SETKA_NO_HIT}
                                         : lists[i].front());
     return hits;
 }
@@ -101,7 +100,8 @@ TEST_P(AllHits, OfBruteForceEqualTheOracles) {
     }
     std::size_t longest = 0;
     for (const std::uint32_t size : sizes_of(expected)) longest = std::max<std::size_t>(longest, size);
-    std::cout << expected.hits.size() << " hits of " << rays.size() << " rays, up to " << longest << " a ray\n";
+    std::cout << expected.hits.size() << " hits of " << rays.size() << " rays, up to " << longest
+              << " a ray\n";
 }
 
 TEST_P(AllHits, OfGridsEqualThoseOfBruteForce) {
@@ -131,14 +131,25 @@ TEST_P(AllHits, TheFirstFewAreAPrefix) {
         for (const std::uint32_t most : few) {
             SCOPED_TRACE(name + ", at most " + std::to_string(most));
             const HitLists expected = first_of(all, most);
-            EXPECT_TRUE(
-                support::same_lists(rays, expected, tracer.all_hits(queue, *structure, rays, {.max_hits = most})));
+            EXPECT_TRUE(support::same_lists(rays, expected,
+                                            tracer.all_hits(queue, *structure, rays, {.max_hits = most})));
             EXPECT_EQ(sizes_of(expected), tracer.count_hits(queue, *structure, rays, {.max_hits = most}));
         }
 }
 
-/// A triangle for each ray to skip: one that it hits, first or later, one that it may not hit, none, or nonsense.
-std::vector<Primitive> skips_for(const oracle::World& world, const std::vector<std::vector<setka::Hit>>& all) {
+/// What would be the hit's triangle if those of an instance went on in the next one; or an instance past the
+/// last.
+Primitive nothing_near(const oracle::World& world, const setka::Hit& hit) {
+    if (hit.instance == 0) return {hit.primitive, world.instance_count};
+    const auto before =
+        std::ranges::count(world.triangles, hit.instance - 1, &oracle::WorldTriangle::instance);
+    return {static_cast<std::uint32_t>(before) + hit.primitive, hit.instance - 1};
+}
+
+/// A triangle for each ray to skip: one that it hits, first or later, one that it may not hit, none, or
+/// nonsense.
+std::vector<Primitive> skips_for(const oracle::World& world,
+                                 const std::vector<std::vector<setka::Hit>>& all) {
     support::Random random(64);
     std::vector<Primitive> skip;
     for (const auto& list : all) {
@@ -150,9 +161,8 @@ std::vector<Primitive> skips_for(const oracle::World& world, const std::vector<s
             one = {hit.primitive, hit.instance};
         } else if (kind == 5) {
             one = {any.primitive, any.instance};
-        } else if (kind == 6) {  // one past the last triangle or instance names nothing
-            one = random.below(2) ? Primitive{any.primitive, world.instance_count}
-                                  : Primitive{static_cast<std::uint32_t>(world.triangles.size()), any.instance};
+        } else if (kind == 6 && !list.empty()) {
+            one = nothing_near(world, list.front());
         }
         skip.push_back(one);
     }
@@ -178,11 +188,13 @@ TEST_P(AllHits, WithoutASkippedTriangleAreTheOthers) {
         for (const auto step : {setka::GridStep::Dda, setka::GridStep::BranchFree}) {
             SCOPED_TRACE(name + (step == setka::GridStep::Dda ? ", DDA" : ", branch-free"));
             const setka::Tracer tracer({.step = step});
-            EXPECT_TRUE(support::same_lists(rays, expected, tracer.all_hits(queue, *structure, rays, {}, skip)));
+            EXPECT_TRUE(
+                support::same_lists(rays, expected, tracer.all_hits(queue, *structure, rays, {}, skip)));
             EXPECT_EQ(sizes_of(expected), tracer.count_hits(queue, *structure, rays, {}, skip));
             const auto closest = tracer.closest_hit(queue, *structure, rays, skip);
             EXPECT_TRUE(support::same_hits(rays, closest_of(expected), closest));
-            EXPECT_TRUE(support::same_occlusion(rays, closest, tracer.any_hit(queue, *structure, rays, skip)));
+            EXPECT_TRUE(
+                support::same_occlusion(rays, closest, tracer.any_hit(queue, *structure, rays, skip)));
         }
 }
 
@@ -205,7 +217,8 @@ setka::Ray down_from(float x, float y, float z) {
 TEST_P(Lists, OfFiveThousandHitsAtOnePlaceGoByNumber) {
     constexpr std::uint32_t count = 5000;
     setka::Queue queue = device().make_queue();
-    const Structures structures(queue, pile(std::vector<float>(count, 0)), 32);
+    // Every triangle is in half of all cells: denser grids would hold no more than more of the same lists.
+    const Structures structures(queue, pile(std::vector<float>(count, 0)), {0.0001f, 0.005f, 0.05f});
     const std::vector<setka::Ray> rays{down_from(0.25f, 0.25f, 1), down_from(0.5f, 0.125f, 3)};
     for (const auto& [name, structure] : structures.all)
         for (const std::uint32_t most : {1u, 2u, 7u, 4999u, 5000u, 5001u}) {
@@ -227,7 +240,7 @@ TEST_P(Lists, OfAPileAreSorted) {
     std::vector<float> heights;
     for (int k = 0; k < 3000; ++k) heights.push_back(static_cast<float>(random.below(1000)) / 64);
     setka::Queue queue = device().make_queue();
-    const Structures structures(queue, pile(heights), 32);
+    const Structures structures(queue, pile(heights));
     const std::vector<setka::Ray> rays{down_from(0.25f, 0.25f, 16)};
     std::vector<std::pair<float, std::uint32_t>> expected;
     for (std::uint32_t k = 0; k < heights.size(); ++k) expected.emplace_back(16 - heights[k], k);
@@ -244,7 +257,8 @@ TEST_P(Lists, OfAPileAreSorted) {
         }
 }
 
-/// From so far that all t are equal, the nearest is still the first: what a picture shows from there is the front.
+/// From so far that all t are equal, the nearest is still the first: what a picture shows from there is the
+/// front.
 TEST_P(Lists, FromAfarAreInOrderWhereTCannotTell) {
     setka::Queue queue = device().make_queue();
     const Structures structures(queue, pile({0.25f, 1, 0, 0.75f, 1}));
@@ -262,7 +276,8 @@ TEST_P(Lists, FromAfarAreInOrderWhereTCannotTell) {
     }
 }
 
-/// A ray that starts on a triangle does not meet it if it is skipped, and does meet another one in the same place.
+/// A ray that starts on a triangle does not meet it if it is skipped, and does meet another one in the same
+/// place.
 TEST_P(Lists, FromASurfaceSkipItAlone) {
     setka::Queue queue = device().make_queue();
     const Structures structures(queue, pile({2, 1, 1, 0}));
@@ -344,10 +359,12 @@ TEST_P(Lists, WrongSizesAreRefused) {
     expect_refused([&] { (void)tracer.all_hits(queue, brute, {rays, skip}); }, few_skips);
     const std::vector<setka::Ray> host_rays(2, down_from(0, 0, 1));
     const std::vector<Primitive> host_skip(1);
-    expect_refused([&] { (void)tracer.all_hits(queue, brute, host_rays, {}, host_skip); }, "skip has 1 elements");
+    expect_refused([&] { (void)tracer.all_hits(queue, brute, host_rays, {}, host_skip); },
+                   "skip has 1 elements");
 }
 
-/// 200,000 hits of 20 bytes in a budget of 3 MiB: refused with the exact numbers, and half of the rays still go.
+/// 200,000 hits of 20 bytes in a budget of 3 MiB: refused with the exact numbers, and half of the rays still
+/// go.
 TEST_P(Lists, ThatDoNotFitAreRefusedExactly) {
     const setka::Device small = setka::Device::open(GetParam(), {.memory_budget_bytes = 3 << 20});
     setka::Queue queue = small.make_queue();
@@ -365,7 +382,8 @@ TEST_P(Lists, ThatDoNotFitAreRefusedExactly) {
         EXPECT_EQ(std::string(error.what()),
                   "the rays, 2000 in this call, have 200000 hits of together 4000000 bytes; " +
                       std::to_string(before + 2001 * 4) +
-                      " of the memory budget of 3145728 bytes are in use: trace fewer rays in a call, or set max_hits");
+                      " of the memory budget of 3145728 bytes are in use: trace fewer rays in a call, or set "
+                      "max_hits");
     }
     EXPECT_EQ(small.memory_in_use_bytes(), before);
     EXPECT_EQ(tracer.all_hits(queue, grid, device_rays, {.max_hits = 50}).hits.size(), 100000u);
