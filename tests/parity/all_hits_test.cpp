@@ -92,9 +92,10 @@ TEST_P(AllHits, OfBruteForceEqualTheOracles) {
     const HitLists expected = support::as_lists(oracle::all_hits(world, rays));
     EXPECT_TRUE(support::same_hits(rays, oracle::closest_hits(world, rays), closest_of(expected)));
     expect_sets_in_order(expected);
-    for (const char* shape : {"defaults", "Group_1", "Serial_256"}) {
-        SCOPED_TRACE(shape);
-        setka::Queue queue = device(support::launch_shape(shape)).make_queue();
+    for (const support::LaunchShape& shape :
+         support::launch_shapes_of(std::get<0>(GetParam()), {"defaults", "Group_1", "Serial_256"})) {
+        SCOPED_TRACE(shape.name);
+        setka::Queue queue = device(shape.options).make_queue();
         const auto brute = setka::BruteForce::build(queue, setka::DeviceScene(queue, host_scene));
         EXPECT_TRUE(support::same_lists(rays, expected, setka::Tracer().all_hits(queue, brute, rays)));
     }

@@ -90,15 +90,24 @@ class AllKernels {
         const auto brute = setka::BruteForce::build(queue_, on_device);
         print_line(name + " brute_force hits", hash(setka::Tracer().closest_hit(queue_, brute, rays)));
         print_line(name + " brute_force any", hash(setka::Tracer().any_hit(queue_, brute, rays)));
+        print_all_hits(name + " brute_force", brute, rays);
         const auto build = [&](setka::CellTables tables) {
             return setka::make_grid_builder({.density = 2, .cell_tables = tables})->build(queue_, on_device);
         };
         const setka::Grid grid = build(setka::CellTables::RunBoundaries);
         print_line(name + " run_boundaries", grid.digest(queue_).to_string());
+        print_all_hits(name + " grid", grid, rays);
         print_line(name + " binary_search", build(setka::CellTables::BinarySearch).digest(queue_).to_string());
         for (const auto step : {setka::GridStep::Dda, setka::GridStep::BranchFree})
             print_rays(name + (step == setka::GridStep::Dda ? " dda" : " branch_free"), grid,
                        setka::Tracer({.step = step}), rays);
+    }
+
+    void print_all_hits(const std::string& name, const setka::Structure& structure,
+                        const std::vector<setka::Ray>& rays) {
+        const setka::HitLists lists = setka::Tracer().all_hits(queue_, structure, rays);
+        print_line(name + " all hits", hash(lists.hits, hash(lists.offsets)));
+        print_line(name + " counts", hash(setka::Tracer().count_hits(queue_, structure, rays, {.max_hits = 2})));
     }
 
     void print_rays(const std::string& name, const setka::Grid& grid, const setka::Tracer& tracer,
