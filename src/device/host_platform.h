@@ -14,7 +14,7 @@
 #include <cstdint>
 
 #if defined(__FAST_MATH__)
-#error "compile the dialect without -ffast-math: its results have to be those of every device"
+#error "compile the dialect with strict floating point: its results have to be those of every device"
 #endif
 static_assert(FLT_EVAL_METHOD == 0, "float expressions must be rounded to float after each operation");
 
