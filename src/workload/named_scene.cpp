@@ -3,8 +3,8 @@
 #include "workload/named_scene.hpp"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
-#include <vector>
 
 #include "setka/error.hpp"
 #include "setka/scenes.hpp"
@@ -21,7 +21,8 @@ namespace {
     return std::ranges::find(built_in_scenes(), name, &BuiltInScene::name) != built_in_scenes().end();
 }
 
-[[nodiscard]] std::filesystem::path snapshot_of(const std::filesystem::path& folder, const std::string& name) {
+[[nodiscard]] std::filesystem::path snapshot_of(const std::filesystem::path& folder,
+                                                const std::string& name) {
     return folder / (name + ".snapshot");
 }
 
@@ -35,7 +36,31 @@ namespace {
     std::ranges::sort(files);
     return files;
 }
+
+[[nodiscard]] bool is_mesh_file(const std::filesystem::path& file) {
+    static constexpr std::array extensions{".obj", ".ply", ".stl", ".off", ".gltf", ".glb"};
+    std::string extension = file.extension().string();
+    for (char& c : extension) c = 'A' <= c && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return std::ranges::find(extensions, extension) != extensions.end();
+}
+
+[[nodiscard]] bool is_one_scene(const std::filesystem::path& directory) {
+    return !files_of(directory).empty();
+}
+#else
+[[nodiscard]] bool is_mesh_file(const std::filesystem::path&) { return false; }
+[[nodiscard]] bool is_one_scene(const std::filesystem::path&) { return false; }
 #endif
+
+void add_names(const std::filesystem::path& folder, const std::filesystem::path& part,
+               std::vector<std::string>& names) {
+    for (const auto& entry : std::filesystem::directory_iterator(folder / part)) {
+        const std::filesystem::path path = part / entry.path().filename();
+        if (entry.is_directory() && !is_one_scene(entry.path())) add_names(folder, path, names);
+        else if (entry.is_directory() || is_mesh_file(path)) names.push_back(path.generic_string());
+        else if (path.extension() == ".snapshot") names.push_back((part / path.stem()).generic_string());
+    }
+}
 
 }  // namespace
 
@@ -62,6 +87,15 @@ std::optional<Scene> NamedScene::load(const std::filesystem::path& folder) const
     const std::filesystem::path snapshot = snapshot_of(folder, name);
     if (std::filesystem::exists(snapshot)) return read_snapshot(snapshot);
     return std::nullopt;
+}
+
+std::vector<std::string> names_of_scenes(const std::filesystem::path& folder, const std::string& part) {
+    std::vector<std::string> names;
+    if (std::filesystem::is_directory(folder / part)) add_names(folder, part, names);
+    std::ranges::sort(names);
+    const auto repeated = std::ranges::unique(names);  // a file beside its own snapshot
+    names.erase(repeated.begin(), repeated.end());
+    return names;
 }
 
 }  // namespace setka::workload

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "setka/scene.hpp"
 
@@ -20,5 +21,9 @@ struct NamedScene {
     /// Nothing if the name is no built-in scene and the folder has no such file. Throws what reading it throws.
     [[nodiscard]] std::optional<Scene> load(const std::filesystem::path& folder) const;
 };
+
+/// The names of all scenes in a part of the folder, "scan", in order. A folder below it that holds OBJ files is one scene; of any
+/// other, every file that this build reads is one. Empty if there is no such part.
+[[nodiscard]] std::vector<std::string> names_of_scenes(const std::filesystem::path& folder, const std::string& part);
 
 }  // namespace setka::workload

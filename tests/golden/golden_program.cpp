@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-/// What do the golden digests have to be? Computes them on one device and prints the file tests/golden/digests.txt; or writes
-/// snapshots of the scene files for a machine whose build cannot read them.
+/// What do the golden digests have to be? Computes them on one device and prints the file
+/// tests/golden/digests.txt; or writes snapshots of the scene files for a machine whose build cannot read
+/// them.
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <span>
 
 #include "golden/cases.hpp"
 #include "setka/error.hpp"
@@ -18,11 +20,15 @@ using namespace setka;
 
 constexpr const char* usage =
     "usage: setka_golden digests SCENES [DEVICE]   prints the digests that DEVICE computes\n"
-    "       setka_golden snapshots SCENES FOLDER   writes a snapshot of each scene file\n";
+    "       setka_golden snapshots SCENES FOLDER [PART...]\n"
+    "                                              writes a snapshot of each scene file that has digests, or "
+    "else of every one\n"
+    "                                              in these parts of SCENES, as scan\n";
 
 [[nodiscard]] Scene load(const std::string& name, const fs::path& scenes) {
     if (auto scene = workload::NamedScene{name}.load(scenes)) return std::move(*scene);
-    throw Error(ErrorCategory::InvalidData, "there is no " + (scenes / name).string() + " and no snapshot of it");
+    throw Error(ErrorCategory::InvalidData,
+                "there is no " + (scenes / name).string() + " and no snapshot of it");
 }
 
 void print_digests(const fs::path& scenes, const std::string& selector) {
@@ -31,8 +37,9 @@ void print_digests(const fs::path& scenes, const std::string& selector) {
     const DeviceInfo& info = device.info();
     std::printf("# Made by setka %s on %s: %s (%s), driver %s.\n", version(), to_string(info.backend),
                 info.name.c_str(), info.platform.c_str(), info.driver.c_str());
-    std::printf("# %u x %u rays, picture %u x %u. Remake with scripts/golden.\n", workload::fingerprint_rays_size,
-                workload::fingerprint_rays_size, workload::fingerprint_width, workload::fingerprint_height);
+    std::printf("# %u x %u rays, picture %u x %u. Remake with scripts/golden.\n",
+                workload::fingerprint_rays_size, workload::fingerprint_rays_size, workload::fingerprint_width,
+                workload::fingerprint_height);
     std::printf("# scene viewpoint density tables primary shadow diffuse picture\n");
     for (const workload::GoldenCase& what : golden::cases()) {
         const Scene scene = load(what.scene, scenes);
@@ -48,13 +55,27 @@ void print_digests(const fs::path& scenes, const std::string& selector) {
     }
 }
 
-void write_snapshots(const fs::path& scenes, const fs::path& folder) {
-    for (const workload::GoldenCase& what : golden::cases()) {
-        if (what.scene.find('/') == std::string::npos) continue;  // built in
-        const fs::path file = folder / (what.scene + ".snapshot");
+[[nodiscard]] std::vector<std::string> scene_files(const fs::path& scenes, std::span<char* const> parts) {
+    std::vector<std::string> names;
+    if (parts.empty())
+        for (const workload::GoldenCase& what : golden::cases())
+            if (what.scene.find('/') != std::string::npos)
+                names.push_back(what.scene);  // the others are built in
+    for (const char* part : parts) {
+        const auto more = workload::names_of_scenes(scenes, part);
+        if (more.empty())
+            throw Error(ErrorCategory::InvalidArgument, "there is no scene in " + (scenes / part).string());
+        names.insert(names.end(), more.begin(), more.end());
+    }
+    return names;
+}
+
+void write_snapshots(const fs::path& scenes, const fs::path& folder, std::span<char* const> parts) {
+    for (const std::string& name : scene_files(scenes, parts)) {
+        const fs::path file = folder / (name + ".snapshot");
         if (fs::exists(file)) continue;
         fs::create_directories(file.parent_path());
-        workload::write_snapshot(file, load(what.scene, scenes));
+        workload::write_snapshot(file, load(name, scenes));
         std::printf("%s\n", file.c_str());
     }
 }
@@ -65,7 +86,8 @@ int main(int argc, char** argv) {
     try {
         const std::string verb = argc > 1 ? argv[1] : "";
         if (verb == "digests" && (argc == 3 || argc == 4)) print_digests(argv[2], argc == 4 ? argv[3] : "");
-        else if (verb == "snapshots" && argc == 4) write_snapshots(argv[2], argv[3]);
+        else if (verb == "snapshots" && argc >= 4)
+            write_snapshots(argv[2], argv[3], {argv + 4, static_cast<std::size_t>(argc - 4)});
         else return std::fputs(usage, stderr), 2;
         return 0;
     } catch (const std::exception& error) {
