@@ -2,6 +2,7 @@
 /// How do scenes and pictures get in and out of files? Its own target, setka::io: the core does not link it.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <span>
 #include <vector>
@@ -35,5 +36,8 @@ void check_image_writable(const std::filesystem::path& file);
 void write_hits(const std::filesystem::path& file, std::span<const Hit> hits);
 /// Writes any-hit results as a NumPy uint8 array of 0 and 1.
 void write_occlusion(const std::filesystem::path& file, std::span<const std::uint32_t> occluded);
+
+/// Writes numbers as a NumPy uint32 array: counts of hits, or where in a list those of each ray begin.
+void write_numbers(const std::filesystem::path& file, std::span<const std::uint32_t> numbers);
 
 }  // namespace setka::io

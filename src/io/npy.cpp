@@ -143,4 +143,11 @@ void write_occlusion(const std::filesystem::path& file, std::span<const std::uin
     stream.finish();
 }
 
+void write_numbers(const std::filesystem::path& file, std::span<const std::uint32_t> numbers) {
+    detail::PendingStream stream(file);
+    write_header(stream, "'<u4'", numbers.size());
+    stream.write(numbers.data(), numbers.size_bytes());
+    stream.finish();
+}
+
 }  // namespace setka::io

@@ -68,6 +68,31 @@ const std::vector<Misuse> misuses{
     {"rays_zero", {"verify", "cube", "--rays", "0"}, {"--rays", "'0'"}},
     {"seed", {"verify", "cube", "--seed", "-1"}, {"--seed", "'-1'"}},
     {"no_rays", {"trace", "cube"}, {"--rays"}},
+    {"two_queries", {"trace", "cube", "--rays", "r.npy", "--any", "--count"}, {"--any", "--count"}},
+    {"hits_without_offsets",
+     {"trace", "cube", "--rays", "r.npy", "--all-hits", "-o", "h.npy"},
+     {"--offsets", "h.npy"}},
+    {"offsets_alone",
+     {"trace", "cube", "--rays", "r.npy", "--offsets", "o.npy"},
+     {"--offsets o.npy", "--all-hits"}},
+    {"offsets_to_hits",
+     {"trace", "cube", "--rays", "r.npy", "--all-hits", "-o", "h.npy", "--offsets", "h.npy"},
+     {"--offsets h.npy", "--output"}},
+    {"step_of_all_hits",
+     {"trace", "cube", "--rays", "r.npy", "--all-hits", "--step", "branch-free"},
+     {"--step branch-free", "dda"}},
+    {"step_of_count",
+     {"trace", "cube", "--rays", "r.npy", "--count", "--step", "branch-free"},
+     {"--step branch-free", "dda"}},
+    {"offsets_nowhere",
+     {"trace", "cube", "--rays", "r.npy", "--all-hits", "--offsets", "none/o.npy"},
+     {"none/o.npy", "folder does not exist"}},
+    {"max_hits_of_closest",
+     {"trace", "cube", "--rays", "r.npy", "--max-hits", "3"},
+     {"--max-hits 3", "--count"}},
+    {"max_hits_0",
+     {"trace", "cube", "--rays", "r.npy", "--count", "--max-hits", "0"},
+     {"--max-hits", "from 1 to 4294967295"}},
     {"scene_nothing", {"scene"}, {"NAME", "showcase"}},
     {"scene_unknown", {"scene", "teapot", "-o", "x.ply"}, {"'teapot'", "terrain"}},
     {"scene_no_output", {"scene", "cube"}, {"--output"}},
@@ -81,7 +106,9 @@ const std::vector<Misuse> misuses{
     {"validate_missing", {"validate", "none.setka"}, {"none.setka", "no such file"}},
     {"save_nowhere", {"build", "cube", "--save", "none/grid.setka"}, {"none/grid.setka", "no directory"}},
     {"compare_nothing", {"compare"}, {"FILES"}},
-    {"compare_one", {"compare", "cube", "--devices", "opencl:0"}, {"--devices", "'opencl:0'", "opencl:0/serial,opencl:0/group"}},
+    {"compare_one",
+     {"compare", "cube", "--devices", "opencl:0"},
+     {"--devices", "'opencl:0'", "opencl:0/serial,opencl:0/group"}},
     {"compare_no_name", {"compare", "cube", "--devices", "opencl:0,"}, {"--devices", "''"}},
     {"compare_only_shape", {"compare", "cube", "--devices", "opencl:0,/group"}, {"--devices", "'/group'"}},
     {"compare_shape",
@@ -99,7 +126,8 @@ INSTANTIATE_TEST_SUITE_P(Misuses, Usage, ::testing::ValuesIn(misuses),
                          [](const auto& test) { return test.param.name; });
 
 TEST(Help, IsThereForEverything) {
-    for (const char* command : {"devices", "render", "build", "trace", "verify", "validate", "compare", "scene"}) {
+    for (const char* command :
+         {"devices", "render", "build", "trace", "verify", "validate", "compare", "scene"}) {
         const Outcome outcome = run({command, "--help"});
         EXPECT_EQ(outcome.exit_code, 0);
         EXPECT_THAT(outcome.output, HasSubstr("--help"));

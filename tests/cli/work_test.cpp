@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
@@ -317,6 +318,49 @@ TEST(Trace, WritesWhatTheRaysHit) {
     const std::string flags = read_file(folder / "flags.npy");
     EXPECT_EQ(flags.substr(flags.size() - 2), std::string("\x01\x00", 2));
     EXPECT_THAT(run({"trace", "cube", "--rays", rays}).output, HasSubstr("Mray/s"));
+}
+
+template <typename T>
+std::vector<T> last_of(const std::string& bytes, std::size_t count) {
+    std::vector<T> values(count);
+    EXPECT_GE(bytes.size(), count * sizeof(T));
+    if (bytes.size() >= count * sizeof(T))
+        std::memcpy(values.data(), bytes.data() + bytes.size() - count * sizeof(T), count * sizeof(T));
+    return values;
+}
+
+TEST(Trace, WritesEveryHitAndWhereEachRaysBegin) {
+    SETKA_NEED_DEVICE();
+    const Folder folder;
+    const std::string rays = folder / "rays.npy";
+    // Past the cube, through it, and from its middle.
+    write_file(rays, rays_file({{5, 5, 5, 0, 0, 0, -1, 100},
+                                {0.25f, 0.125f, 5, 0, 0, 0, -1, 100},
+                                {0.25f, 0.125f, 0, 0, 0, 0, -1, 100}}));
+    const json all = run_json({"trace", "cube", "--rays", rays, "--all-hits", "-o", folder / "hits.npy",
+                               "--offsets", folder / "offsets.npy", "--repeat", "2"});
+    EXPECT_EQ(all["query"], "all");
+    EXPECT_EQ(all["hits"], 2);
+    EXPECT_EQ(all["hits_of_all_rays"], 3);
+    const std::string offsets = read_file(folder / "offsets.npy");
+    EXPECT_THAT(offsets, HasSubstr("'descr': '<u4', 'fortran_order': False, 'shape': (4,)"));
+    EXPECT_EQ(last_of<std::uint32_t>(offsets, 4), (std::vector<std::uint32_t>{0, 0, 2, 3}));
+    const std::string hits = read_file(folder / "hits.npy");
+    EXPECT_THAT(hits, HasSubstr("'shape': (3,)"));
+    const auto records = last_of<std::array<float, 5>>(hits, 3);
+    EXPECT_EQ(records[0][0], 4);
+    EXPECT_EQ(records[1][0], 6);
+    EXPECT_EQ(records[2][0], 1);
+
+    const json first = run_json({"trace", "cube", "--rays", rays, "--all-hits", "--max-hits", "1"});
+    EXPECT_EQ(first["hits_of_all_rays"], 2);
+    const json count = run_json({"trace", "cube", "--rays", rays, "--count", "-o", folder / "counts.npy"});
+    EXPECT_EQ(count["query"], "count");
+    EXPECT_EQ(count["hits_of_all_rays"], 3);
+    EXPECT_EQ(last_of<std::uint32_t>(read_file(folder / "counts.npy"), 3),
+              (std::vector<std::uint32_t>{0, 2, 1}));
+    EXPECT_THAT(run({"trace", "cube", "--rays", rays, "--count", "--max-hits", "1"}).output,
+                HasSubstr("hits         2"));
 }
 
 TEST(Verify, FindsNoMismatch) {

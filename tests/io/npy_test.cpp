@@ -81,6 +81,19 @@ TEST(WriteHits, SpellsTheRecordsOut) {
     EXPECT_EQ(std::memcmp(bytes.data() + bytes.size() - 40, hits, 40), 0);
 }
 
+TEST(WriteNumbers, WritesThemLittleEndian) {
+    const Folder folder;
+    write_numbers(folder / "n.npy", std::vector<std::uint32_t>{1, 0, 0xfedcba98u});
+    const std::string bytes = read_bytes(folder / "n.npy");
+    EXPECT_THAT(bytes, testing::HasSubstr("'descr': '<u4', 'fortran_order': False, 'shape': (3,)"));
+    ASSERT_GT(bytes.size(), 12u);
+    EXPECT_EQ((bytes.size() - 12) % 64, 0u) << "the data is aligned";
+    EXPECT_EQ(bytes.substr(bytes.size() - 12), std::string("\1\0\0\0\0\0\0\0\x98\xba\xdc\xfe", 12));
+    expect_error([&] { write_numbers(folder / "absent/n.npy", {}); }, ErrorCategory::InvalidArgument,
+                 {"no directory"});
+    EXPECT_EQ(folder.file_count(), 1u);
+}
+
 TEST(WriteOcclusion, WritesBytes) {
     const Folder folder;
     write_occlusion(folder / "o.npy", std::vector<std::uint32_t>{1, 0, 5});
