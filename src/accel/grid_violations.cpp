@@ -87,9 +87,6 @@ void check_counts(const ::SetkaGridHeader& h, std::vector<std::string>& list) {
 }
 
 void check_numbers(const ::SetkaGridHeader& h, std::vector<std::string>& list) {
-    for (int axis = 0; axis < 3; ++axis)
-        require(list, std::isfinite(h.origin[axis]), "header: origin[", axis, "] is ", h.origin[axis],
-                "; it has to be finite");
     require(list, h.cell_size >= least_cell_size && h.cell_size <= largest_extent, "header: cell_size is ",
             h.cell_size, "; ", least_cell_size, " to ", largest_extent, " are accepted");
     require(list, same_bits(h.inverse_cell_size, 1.0f / h.cell_size), "header: inverse_cell_size is ",

@@ -69,6 +69,11 @@ Model model_of(const oracle::Scene& scene, const oracle::GridOptions& options) {
     return model;
 }
 
+void scale_cells(Model& model, float factor) {
+    model.header.cell_size *= factor;
+    model.header.inverse_cell_size = 1.0f / model.header.cell_size;
+}
+
 Bytes file_of(const Model& model) {
     const Part parts[] = {{"header", bytes_of(model.header)},
                           {"bounds", bytes_of(model.bounds)},

@@ -29,6 +29,9 @@ struct Model {
 
 [[nodiscard]] Model model_of(const oracle::Scene& scene, const oracle::GridOptions& options = {});
 
+/// Another size of cells, with what follows from it.
+void scale_cells(Model& model, float factor);
+
 /// Its file, with right checksums whatever the tables hold.
 [[nodiscard]] Bytes file_of(const Model& model);
 
