@@ -73,7 +73,7 @@ TEST_P(Scan, TotalsUpToTheLimitAndNotBeyond) {
     refuses({limit, 1});
     refuses({0x80000000u});
     refuses({0xffffffffu, 0xffffffffu});
-    refuses({0x80000000u, 0x80000000u});                    // 2^32: 0 in 32 bits
+    refuses({0x80000000u, 0x80000000u});  // 2^32: 0 in 32 bits
     const std::uint32_t half = support::sized(1u << 16, 1u << 9);
     refuses(std::vector<std::uint32_t>(half, (1u << 31) / half * 2));  // the same from many
     many.assign(size, 0xffffffffu);

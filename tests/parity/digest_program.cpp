@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What are the digests of some grids, hits and pictures, on every device? One line each; started with other driver
-/// settings, or on another driver, the program has to print the same.
+/// What are the digests of some grids, hits and pictures, on every device? One line each; started with other
+/// driver settings, or on another driver, the program has to print the same.
 ///
 ///   setka_digest           grids and hits at ordinary sizes, in each device's own launch shape
 ///   setka_digest small     every kernel, in two launch shapes, at sizes that take any driver seconds
@@ -97,7 +97,8 @@ class AllKernels {
         const setka::Grid grid = build(setka::CellTables::RunBoundaries);
         print_line(name + " run_boundaries", grid.digest(queue_).to_string());
         print_all_hits(name + " grid", grid, rays);
-        print_line(name + " binary_search", build(setka::CellTables::BinarySearch).digest(queue_).to_string());
+        print_line(name + " binary_search",
+                   build(setka::CellTables::BinarySearch).digest(queue_).to_string());
         for (const auto step : {setka::GridStep::Dda, setka::GridStep::BranchFree})
             print_rays(name + (step == setka::GridStep::Dda ? " dda" : " branch_free"), grid,
                        setka::Tracer({.step = step}), rays);
@@ -107,7 +108,8 @@ class AllKernels {
                         const std::vector<setka::Ray>& rays) {
         const setka::HitLists lists = setka::Tracer().all_hits(queue_, structure, rays);
         print_line(name + " all hits", hash(lists.hits, hash(lists.offsets)));
-        print_line(name + " counts", hash(setka::Tracer().count_hits(queue_, structure, rays, {.max_hits = 2})));
+        print_line(name + " counts",
+                   hash(setka::Tracer().count_hits(queue_, structure, rays, {.max_hits = 2})));
     }
 
     void print_rays(const std::string& name, const setka::Grid& grid, const setka::Tracer& tracer,
@@ -136,7 +138,8 @@ class AllKernels {
             options.width = sizes_.width;
             options.height = sizes_.height;
             options.view = view;
-            const setka::Image image = setka::Renderer(options).render(queue_, on_device, grid, *scene.camera);
+            const setka::Image image =
+                setka::Renderer(options).render(queue_, on_device, grid, *scene.camera);
             print_line(std::string("picture ") + name, hash(image.srgb, hash(image.linear)));
         };
         print("shaded", setka::View::Shaded);
@@ -161,7 +164,8 @@ void run(const std::string& mode, const std::string& id) {
     if (mode == "ordinary") return print_ordinary(id);
     if (mode != "small" && mode != "tiny")
         throw std::invalid_argument("mode is '" + mode + "'; ordinary, small, tiny and devices are accepted");
-    std::vector<AllKernels> shapes;  // their queues live to the end: Oclgrind confuses a buffer with an earlier one
+    // Their queues live to the end: Oclgrind confuses a buffer with an earlier one.
+    std::vector<AllKernels> shapes;
     for (const char* shape : {"defaults", "Group_32"})
         shapes.emplace_back(id, shape, mode == "tiny" ? tiny : small).print();
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Does the checker see what it is there for? Runs a kernel with a race in local memory and one that copies what
-/// nobody wrote, and leaves it to Oclgrind to say so.
+/// Does the checker see what it is there for? Runs a kernel with a race in local memory and one that copies
+/// what nobody wrote, and leaves it to Oclgrind to say so.
 #define CL_HPP_TARGET_OPENCL_VERSION 120
 #define CL_HPP_MINIMUM_OPENCL_VERSION 120
 #define CL_HPP_ENABLE_EXCEPTIONS

@@ -94,7 +94,8 @@ std::string obstacle(const std::string& id, const setka::DeviceOptions& options)
     } catch (const setka::Error& error) {
         const setka::Device device = open_once(id);
         const std::uint32_t usual = device.info().type == setka::DeviceType::Cpu ? 64 : 128;
-        if (error.category() != setka::ErrorCategory::InvalidArgument || device.options().work_group_size >= usual)
+        if (error.category() != setka::ErrorCategory::InvalidArgument ||
+            device.options().work_group_size >= usual)
             throw;
         return refused[{id, options.work_group_size, options.primitives}] = error.what();
     }

@@ -24,8 +24,9 @@ namespace support {
 /// The device `id` with these options, opened once per process and kept.
 [[nodiscard]] setka::Device open_once(const std::string& id, const setka::DeviceOptions& options = {});
 
-/// Why the device `id` cannot be opened with these options, if that is the driver's limit: one whose own choice of
-/// work-groups is smaller than usual may refuse a size that others accept. Empty if it can be opened.
+/// Why the device `id` cannot be opened with these options, if that is the driver's limit: one whose own
+/// choice of work-groups is smaller than usual may refuse a size that others accept. Empty if it can be
+/// opened.
 [[nodiscard]] std::string obstacle(const std::string& id, const setka::DeviceOptions& options);
 
 /// A test of one device; its parameter is the device's id.
