@@ -160,6 +160,38 @@ TEST_P(Rays, CostsAreSane) {
     }
 }
 
+/// Origins may be the largest floats: their working parameters are as large.
+TEST_P(Rays, FromTheEndOfTheFloatsHit) {
+    constexpr float farthest = std::numeric_limits<float>::max(),
+                    infinity = std::numeric_limits<float>::infinity();
+    std::vector<setka::Ray> rays;
+    for (const float distance : {3.1e38f, 0x1.f4p+127f, farthest})
+        for (const float speed : {1.0f, -1.0f, 0x1p96f, -0x1p118f, 0x1p-100f})
+            for (unsigned corner = 1; corner < 27; ++corner) {
+                setka::Ray ray{{0.01f, 0.02f, 0.03f}, -infinity, {0, 0, 0}, infinity};
+                for (unsigned axis = 0, digits = corner; axis < 3; ++axis, digits /= 3) {
+                    const float side = static_cast<float>(digits % 3) - 1;
+                    if (side != 0) ray.origin[axis] = side * distance;
+                    ray.direction[axis] = side * speed;
+                }
+                rays.push_back(ray);
+            }
+    setka::Queue queue = device().make_queue();
+    const setka::Scene host_scene = support::ball(200);
+    const auto expected = oracle::closest_hits(oracle::make_world(host_scene), rays);
+    EXPECT_GT(count_hits(expected), rays.size() / 2);
+    const setka::DeviceScene device_scene(queue, host_scene);
+    const auto brute = setka::BruteForce::build(queue, device_scene);
+    EXPECT_TRUE(support::same_hits(rays, expected, setka::Tracer().closest_hit(queue, brute, rays)));
+    const auto grid = setka::make_grid_builder()->build(queue, device_scene);
+    for (const auto step : steps) {
+        SCOPED_TRACE(name(step));
+        const setka::Tracer tracer({.step = step});
+        EXPECT_TRUE(support::same_hits(rays, expected, tracer.closest_hit(queue, grid, rays)));
+        EXPECT_TRUE(support::same_occlusion(rays, expected, tracer.any_hit(queue, grid, rays)));
+    }
+}
+
 TEST_P(Rays, ShortOutputsAreRefused) {
     setka::Queue queue = device().make_queue();
     const setka::Scene host_scene = support::ball(200);

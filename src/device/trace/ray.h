@@ -55,8 +55,8 @@ SK_FUNCTION sk_span sk_clip_axis(sk_span span, float q, float d, float size, flo
 
 SK_FUNCTION sk_span sk_clip_box(sk_trace_params params, sk_vec3 o, sk_vec3 d) {
     sk_span r;
-    r.w0 = -3e38f;
-    r.w1 = 3e38f;
+    r.w0 = sk_bits_float(0xff800000u); /* -infinity: origins may be as far away as floats go */
+    r.w1 = sk_bits_float(0x7f800000u);
     r.meets = 1;
     r = sk_clip_axis(r, o.x - params.lower[0], d.x, params.size[0], params.pad);
     r = sk_clip_axis(r, o.y - params.lower[1], d.y, params.size[1], params.pad);
