@@ -39,90 +39,102 @@ SK_KERNEL void trace_brute_any(sk_u32 n, sk_trace_params params, SK_GLOBAL const
 
 SK_KERNEL void trace_grid_closest_dda(
     sk_u32 n, SetkaGridHeader grid, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
-    SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL SetkaHit* hits, SK_GLOBAL const sk_i32* offsets,
-    SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
-    SK_GLOBAL const sk_u32* instance_starts, SK_GLOBAL const SetkaInstance* instances) {
+    SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL SetkaHit* hits, SK_GLOBAL const sk_u32* occupancy,
+    SK_GLOBAL const sk_i32* offsets, SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* references,
+    SK_GLOBAL const float* triangles, SK_GLOBAL const sk_u32* instance_starts,
+    SK_GLOBAL const SetkaInstance* instances) {
     const sk_u32 i = sk_global_id();
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
         const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
-        const sk_walk walk = sk_walk_grid(grid, params, ray, offsets, counts, references, triangles, instance_starts,
-                                          instances, skipped, 0, 0);
+        const sk_grid_tables tables =
+            sk_make_tables(occupancy, offsets, counts, references, triangles, instance_starts, instances);
+        const sk_walk walk = sk_walk_grid(grid, params, ray, tables, skipped, 0);
         hits[i] = sk_make_hit(params, ray, instance_starts, walk.best);
     }
 }
 
 SK_KERNEL void trace_grid_closest_free(
     sk_u32 n, SetkaGridHeader grid, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
-    SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL SetkaHit* hits, SK_GLOBAL const sk_i32* offsets,
-    SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
-    SK_GLOBAL const sk_u32* instance_starts, SK_GLOBAL const SetkaInstance* instances) {
+    SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL SetkaHit* hits, SK_GLOBAL const sk_u32* occupancy,
+    SK_GLOBAL const sk_i32* offsets, SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* references,
+    SK_GLOBAL const float* triangles, SK_GLOBAL const sk_u32* instance_starts,
+    SK_GLOBAL const SetkaInstance* instances) {
     const sk_u32 i = sk_global_id();
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
         const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
-        const sk_walk walk = sk_walk_grid(grid, params, ray, offsets, counts, references, triangles, instance_starts,
-                                          instances, skipped, 1, 0);
+        const sk_grid_tables tables =
+            sk_make_tables(occupancy, offsets, counts, references, triangles, instance_starts, instances);
+        const sk_walk walk = sk_walk_cells(grid, params, ray, tables, skipped, 0);
         hits[i] = sk_make_hit(params, ray, instance_starts, walk.best);
     }
 }
 
 SK_KERNEL void trace_grid_any_dda(
     sk_u32 n, SetkaGridHeader grid, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
-    SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL sk_u32* occluded, SK_GLOBAL const sk_i32* offsets,
-    SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
-    SK_GLOBAL const sk_u32* instance_starts, SK_GLOBAL const SetkaInstance* instances) {
+    SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL sk_u32* occluded, SK_GLOBAL const sk_u32* occupancy,
+    SK_GLOBAL const sk_i32* offsets, SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* references,
+    SK_GLOBAL const float* triangles, SK_GLOBAL const sk_u32* instance_starts,
+    SK_GLOBAL const SetkaInstance* instances) {
     const sk_u32 i = sk_global_id();
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
         const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
-        const sk_walk walk = sk_walk_grid(grid, params, ray, offsets, counts, references, triangles, instance_starts,
-                                          instances, skipped, 0, 1);
+        const sk_grid_tables tables =
+            sk_make_tables(occupancy, offsets, counts, references, triangles, instance_starts, instances);
+        const sk_walk walk = sk_walk_grid(grid, params, ray, tables, skipped, 1);
         occluded[i] = walk.best.triangle != SETKA_NO_HIT ? 1u : 0u;
     }
 }
 
 SK_KERNEL void trace_grid_any_free(
     sk_u32 n, SetkaGridHeader grid, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
-    SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL sk_u32* occluded, SK_GLOBAL const sk_i32* offsets,
-    SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
-    SK_GLOBAL const sk_u32* instance_starts, SK_GLOBAL const SetkaInstance* instances) {
+    SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL sk_u32* occluded, SK_GLOBAL const sk_u32* occupancy,
+    SK_GLOBAL const sk_i32* offsets, SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* references,
+    SK_GLOBAL const float* triangles, SK_GLOBAL const sk_u32* instance_starts,
+    SK_GLOBAL const SetkaInstance* instances) {
     const sk_u32 i = sk_global_id();
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
         const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
-        const sk_walk walk = sk_walk_grid(grid, params, ray, offsets, counts, references, triangles, instance_starts,
-                                          instances, skipped, 1, 1);
+        const sk_grid_tables tables =
+            sk_make_tables(occupancy, offsets, counts, references, triangles, instance_starts, instances);
+        const sk_walk walk = sk_walk_cells(grid, params, ray, tables, skipped, 1);
         occluded[i] = walk.best.triangle != SETKA_NO_HIT ? 1u : 0u;
     }
 }
 
 SK_KERNEL void trace_grid_cost_dda(
     sk_u32 n, SetkaGridHeader grid, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
-    SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL SetkaTraceCost* costs, SK_GLOBAL const sk_i32* offsets,
-    SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
-    SK_GLOBAL const sk_u32* instance_starts, SK_GLOBAL const SetkaInstance* instances) {
+    SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL SetkaTraceCost* costs, SK_GLOBAL const sk_u32* occupancy,
+    SK_GLOBAL const sk_i32* offsets, SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* references,
+    SK_GLOBAL const float* triangles, SK_GLOBAL const sk_u32* instance_starts,
+    SK_GLOBAL const SetkaInstance* instances) {
     const sk_u32 i = sk_global_id();
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
         const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
-        const sk_walk walk = sk_walk_grid(grid, params, ray, offsets, counts, references, triangles, instance_starts,
-                                          instances, skipped, 0, 0);
+        const sk_grid_tables tables =
+            sk_make_tables(occupancy, offsets, counts, references, triangles, instance_starts, instances);
+        const sk_walk walk = sk_walk_grid(grid, params, ray, tables, skipped, 0);
         costs[i] = walk.cost;
     }
 }
 
 SK_KERNEL void trace_grid_cost_free(
     sk_u32 n, SetkaGridHeader grid, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
-    SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL SetkaTraceCost* costs, SK_GLOBAL const sk_i32* offsets,
-    SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
-    SK_GLOBAL const sk_u32* instance_starts, SK_GLOBAL const SetkaInstance* instances) {
+    SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL SetkaTraceCost* costs, SK_GLOBAL const sk_u32* occupancy,
+    SK_GLOBAL const sk_i32* offsets, SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* references,
+    SK_GLOBAL const float* triangles, SK_GLOBAL const sk_u32* instance_starts,
+    SK_GLOBAL const SetkaInstance* instances) {
     const sk_u32 i = sk_global_id();
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
         const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
-        const sk_walk walk = sk_walk_grid(grid, params, ray, offsets, counts, references, triangles, instance_starts,
-                                          instances, skipped, 1, 0);
+        const sk_grid_tables tables =
+            sk_make_tables(occupancy, offsets, counts, references, triangles, instance_starts, instances);
+        const sk_walk walk = sk_walk_cells(grid, params, ray, tables, skipped, 0);
         costs[i] = walk.cost;
     }
 }

@@ -39,34 +39,38 @@ SK_KERNEL void trace_brute_all(sk_u32 n, sk_trace_params params, SK_GLOBAL const
 
 SK_KERNEL void trace_grid_count(sk_u32 n, sk_u32 most, SetkaGridHeader grid, sk_trace_params params,
                                 SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
-                                SK_GLOBAL sk_u32* hit_counts, SK_GLOBAL const sk_i32* offsets,
+                                SK_GLOBAL sk_u32* hit_counts, SK_GLOBAL const sk_u32* occupancy,
+                                SK_GLOBAL const sk_i32* offsets,
                                 SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* references,
                                 SK_GLOBAL const float* triangles, SK_GLOBAL const sk_u32* instance_starts,
                                 SK_GLOBAL const SetkaInstance* instances) {
     const sk_u32 i = sk_global_id();
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
+        const sk_grid_tables tables =
+            sk_make_tables(occupancy, offsets, counts, references, triangles, instance_starts, instances);
         const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
-        hit_counts[i] = sk_walk_grid_all(grid, params, ray, offsets, counts, references, triangles,
-                                         instance_starts, instances, skipped, (SK_GLOBAL SetkaHit*)0, most, 0);
+        hit_counts[i] = sk_walk_grid_all(grid, params, ray, tables, skipped, (SK_GLOBAL SetkaHit*)0, most, 0);
     }
 }
 
 SK_KERNEL void trace_grid_all(sk_u32 n, SetkaGridHeader grid, sk_trace_params params,
                               SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
                               SK_GLOBAL const sk_u32* hit_offsets, SK_GLOBAL SetkaHit* hits,
-                              SK_GLOBAL const sk_i32* offsets, SK_GLOBAL const sk_u32* counts,
+                              SK_GLOBAL const sk_u32* occupancy, SK_GLOBAL const sk_i32* offsets,
+                              SK_GLOBAL const sk_u32* counts,
                               SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
                               SK_GLOBAL const sk_u32* instance_starts,
                               SK_GLOBAL const SetkaInstance* instances) {
     const sk_u32 i = sk_global_id();
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
+        const sk_grid_tables tables =
+            sk_make_tables(occupancy, offsets, counts, references, triangles, instance_starts, instances);
         const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
         const sk_u32 first = hit_offsets[i];
         const sk_u32 found =
-            sk_walk_grid_all(grid, params, ray, offsets, counts, references, triangles, instance_starts,
-                             instances, skipped, hits + first, hit_offsets[i + 1u] - first, 1);
+            sk_walk_grid_all(grid, params, ray, tables, skipped, hits + first, hit_offsets[i + 1u] - first, 1);
         sk_finish_hits(params, ray, instance_starts, hits + first, found);
     }
 }

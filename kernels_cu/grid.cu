@@ -3,6 +3,7 @@
 #include "platform.h"
 
 #include "device/grid/build.h"
+#include "device/grid/occupancy.h"
 
 SK_KERNEL void grid_transform(sk_u32 n, sk_u32 instance_count, SK_GLOBAL const float* positions,
                               SK_GLOBAL const sk_u32* indices, SK_GLOBAL const SetkaInstance* instances,
@@ -57,4 +58,15 @@ SK_KERNEL void grid_cells_search(sk_u32 n, sk_u32 pair_count, SK_GLOBAL const sk
                                  SK_GLOBAL sk_i32* offsets, SK_GLOBAL sk_u32* counts) {
     const sk_u32 c = sk_global_id();
     if (c < n) sk_grid_cells_search(c, pair_count, cells, offsets, counts);
+}
+
+SK_KERNEL void grid_occupancy_fine(sk_u32 n, SetkaGridHeader grid, SK_GLOBAL const sk_i32* offsets,
+                                   SK_GLOBAL sk_u32* occupancy) {
+    const sk_u32 w = sk_global_id();
+    if (w < n) sk_occupancy_fine(w, grid, offsets, occupancy);
+}
+
+SK_KERNEL void grid_occupancy_coarse(sk_u32 n, SetkaGridHeader grid, SK_GLOBAL sk_u32* occupancy) {
+    const sk_u32 w = sk_global_id();
+    if (w < n) sk_occupancy_coarse(w, grid, occupancy);
 }

@@ -63,10 +63,12 @@ class GridPlan {
     Buffer<std::uint32_t> row_offsets_;
 };
 
-/// The finished grid: three tables, as laid down at SetkaGridHeader.
+/// The finished grid: three tables, as laid down at SetkaGridHeader, and what walks skip empty space by.
 class Grid final : public Structure {
   public:
-    Grid(WorldGeometry geometry, const ::SetkaGridHeader& header, Buffer<std::int32_t> offsets,
+    /// Puts tables together, and derives what walks need besides. Throws InvalidArgument if offsets or counts do not have one
+    /// element for each cell.
+    Grid(Queue& queue, WorldGeometry geometry, const ::SetkaGridHeader& header, Buffer<std::int32_t> offsets,
          Buffer<std::uint32_t> counts, Buffer<std::uint32_t> references);
 
     [[nodiscard]] StructureKind kind() const noexcept override { return StructureKind::UniformGrid; }
@@ -75,6 +77,9 @@ class Grid final : public Structure {
     [[nodiscard]] const Buffer<std::int32_t>& offsets() const noexcept { return offsets_; }
     [[nodiscard]] const Buffer<std::uint32_t>& counts() const noexcept { return counts_; }
     [[nodiscard]] const Buffer<std::uint32_t>& references() const noexcept { return references_; }
+    /// One bit a cell and one for each 4 x 4 x 4 cells, 1 where not empty. Follows from the offsets, is not part of the digest and
+    /// may change from version to version (src/device/grid/occupancy.h).
+    [[nodiscard]] const Buffer<std::uint32_t>& occupancy() const noexcept { return occupancy_; }
     /// XXH3-128 over header (64 bytes), offsets, counts and references, little-endian, in this order. Waits and downloads.
     [[nodiscard]] Digest digest(Queue& queue) const;
 
@@ -83,6 +88,7 @@ class Grid final : public Structure {
     Buffer<std::int32_t> offsets_;
     Buffer<std::uint32_t> counts_;
     Buffer<std::uint32_t> references_;
+    Buffer<std::uint32_t> occupancy_;
 };
 
 /// Builds grids. The library has one implementation, on Queue; tests bring a second, scalar one.

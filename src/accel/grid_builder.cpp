@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
-/// In which order do the stages of the grid build run, and what memory do they hold? The one builder, written on Queue.
+/// In which order do the stages of the grid build run, and what memory do they hold? The one builder, written
+/// on Queue.
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <string>
 
+#include "accel/occupancy.hpp"
 #include "accel/world_geometry.hpp"
 #include "algo/reduce.hpp"
 #include "algo/scan.hpp"
@@ -26,18 +28,19 @@ std::uint32_t key_bits_of(const ::SetkaGridHeader& header) { return std::bit_wid
 
 /// The most bytes that a build holds at a time: one line for each point where a stage has all its buffers.
 std::uint64_t peak_bytes_of(Queue& queue, const ::SetkaGridHeader& header, std::uint64_t row_count) {
-    const std::uint64_t n = header.triangle_count, r = row_count, p = header.reference_count, c = header.cell_count;
-    const auto n32 = static_cast<std::uint32_t>(n), r32 = static_cast<std::uint32_t>(r), p32 = static_cast<std::uint32_t>(p);
+    const std::uint64_t n = header.triangle_count, r = row_count, p = header.reference_count,
+                        c = header.cell_count;
+    const auto n32 = static_cast<std::uint32_t>(n), r32 = static_cast<std::uint32_t>(r),
+               p32 = static_cast<std::uint32_t>(p);
     const std::uint64_t world = 9 * n * sizeof(float);
     const std::uint64_t row_starts = (n + 1) * word, row_triangles = r * word, row_offsets = (r + 1) * word;
     const std::uint64_t rows = row_starts + row_triangles + row_offsets;
     const std::uint64_t pairs = 2 * p * word;
     return world + std::max({word + reduce_scratch_bytes(queue.device(), n32),
                              n * word + row_starts + scan_scratch_bytes(queue, n32),
-                             rows + r * word + scan_scratch_bytes(queue, r32),
-                             rows + pairs,
+                             rows + r * word + scan_scratch_bytes(queue, r32), rows + pairs,
                              pairs + sort_scratch_bytes(queue, p32, key_bits_of(header)),
-                             pairs + 2 * c * word});
+                             pairs + (2 * c + occupancy_words(header.dims)) * word});
 }
 
 std::string bytes_text(std::uint64_t bytes) {
@@ -46,8 +49,8 @@ std::string bytes_text(std::uint64_t bytes) {
 
 void check_options(const GridOptions& options) {
     if (!(options.density >= 1e-6f && options.density <= 1e6f))
-        throw Error(ErrorCategory::InvalidArgument,
-                    "density is " + std::to_string(options.density) + "; 1e-6 to 1e6 cells a triangle are accepted");
+        throw Error(ErrorCategory::InvalidArgument, "density is " + std::to_string(options.density) +
+                                                        "; 1e-6 to 1e6 cells a triangle are accepted");
     if (options.max_cells_per_axis < 1 || options.max_cells_per_axis > 4096)
         throw Error(ErrorCategory::InvalidArgument, "max_cells_per_axis is " +
                                                         std::to_string(options.max_cells_per_axis) +
@@ -62,8 +65,9 @@ void check_cell_count(const Device& device, const GridOptions& options, std::uin
     if (cells <= limit) return;
     throw Error(ErrorCategory::OutOfMemory,
                 "density " + std::to_string(options.density) + " needs " + std::to_string(cells) +
-                    " cells; the memory budget of " + bytes_text(device.options().memory_budget_bytes) + " and " +
-                    device.info().name + " allow " + std::to_string(limit) + ": use a density below " +
+                    " cells; the memory budget of " + bytes_text(device.options().memory_budget_bytes) +
+                    " and " + device.info().name + " allow " + std::to_string(limit) +
+                    ": use a density below " +
                     std::to_string(double(options.density) * double(limit) / double(cells)));
 }
 
@@ -112,8 +116,8 @@ class UniformGridBuilder final : public GridBuilder {
         auto cells = queue.make_buffer<std::uint32_t>(pair_count, "pair cells");
         auto references = queue.make_buffer<std::uint32_t>(pair_count, "references");
         launch_items(queue, Kernel::grid_emit, static_cast<std::uint32_t>(plan.row_count_), header,
-                     plan.geometry_.triangles, plan.row_triangles_, plan.row_starts_, plan.row_offsets_, cells,
-                     references);
+                     plan.geometry_.triangles, plan.row_triangles_, plan.row_starts_, plan.row_offsets_,
+                     cells, references);
         plan.row_triangles_ = {};
         plan.row_starts_ = {};
         plan.row_offsets_ = {};
@@ -125,14 +129,18 @@ class UniformGridBuilder final : public GridBuilder {
         auto offsets = queue.make_buffer<std::int32_t>(header.cell_count, "offsets");
         auto counts = queue.make_buffer<std::uint32_t>(header.cell_count, "counts");
         if (options_.cell_tables == CellTables::BinarySearch) {
-            launch_items(queue, Kernel::grid_cells_search, header.cell_count, pair_count, cells, offsets, counts);
+            launch_items(queue, Kernel::grid_cells_search, header.cell_count, pair_count, cells, offsets,
+                         counts);
         } else {
             launch_items(queue, Kernel::grid_cells_clear, header.cell_count, offsets, counts);
             launch_items(queue, Kernel::grid_cells_mark, pair_count, cells, offsets, counts);
             launch_items(queue, Kernel::grid_cells_close, header.cell_count, offsets, counts);
         }
+        queue.impl().begin_stage("occupancy");
+        Grid grid(queue, std::move(plan.geometry_), header, std::move(offsets), std::move(counts),
+                  std::move(references));
         queue.impl().begin_stage("other");
-        return Grid(std::move(plan.geometry_), header, std::move(offsets), std::move(counts), std::move(references));
+        return grid;
     }
 
   private:
@@ -149,17 +157,20 @@ class UniformGridBuilder final : public GridBuilder {
         const auto r = static_cast<std::uint32_t>(plan.row_count_);
         plan.row_triangles_ = queue.make_buffer<std::uint32_t>(r, "row triangles");
         plan.row_offsets_ = queue.make_buffer<std::uint32_t>(std::size_t(r) + 1, "row offsets");
-        launch_items(queue, Kernel::grid_row_list, plan.header_.triangle_count, plan.row_starts_, plan.row_triangles_);
+        launch_items(queue, Kernel::grid_row_list, plan.header_.triangle_count, plan.row_starts_,
+                     plan.row_triangles_);
         queue.impl().begin_stage("count");
         const auto counts = queue.make_buffer<std::uint32_t>(r, "cells a row");
-        launch_items(queue, Kernel::grid_count, r, plan.header_, plan.geometry_.triangles, plan.row_triangles_,
-                     plan.row_starts_, counts);
-        plan.header_.reference_count =
-            static_cast<std::uint32_t>(exclusive_scan(queue, counts, r, plan.row_offsets_, "pairs (triangle, cell)"));
+        launch_items(queue, Kernel::grid_count, r, plan.header_, plan.geometry_.triangles,
+                     plan.row_triangles_, plan.row_starts_, counts);
+        plan.header_.reference_count = static_cast<std::uint32_t>(
+            exclusive_scan(queue, counts, r, plan.row_offsets_, "pairs (triangle, cell)"));
     }
 
     static std::uint64_t table_bytes_of(const GridPlan& plan) {
-        std::uint64_t sum = (2 * std::uint64_t(plan.header_.cell_count) + plan.header_.reference_count) * word;
+        std::uint64_t sum = (2 * std::uint64_t(plan.header_.cell_count) + plan.header_.reference_count +
+                             occupancy_words(plan.header_.dims)) *
+                            word;
         for (const Section& section : geometry_sections(plan.geometry_)) sum += section.size_bytes;
         return sum;
     }

@@ -212,7 +212,7 @@ Grid upload(Queue& queue, const Examined& examined) {
     auto device_offsets = queue.upload(tables.offsets, "offsets");
     auto device_counts = queue.upload(tables.counts, "counts");
     auto device_references = queue.upload(tables.references, "references");
-    return Grid(std::move(geometry), tables.header, std::move(device_offsets), std::move(device_counts),
+    return Grid(queue, std::move(geometry), tables.header, std::move(device_offsets), std::move(device_counts),
                 std::move(device_references));
 }
 

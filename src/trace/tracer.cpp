@@ -74,8 +74,8 @@ struct Query {
                     launch_items(queue,
                                  options.step == GridStep::Dda ? kernels.grid_dda : kernels.grid_branch_free, n,
                                  values..., grid.header(), scene, batch.rays, batch.skip, particular...,
-                                 grid.offsets(), grid.counts(), grid.references(), geometry.triangles,
-                                 geometry.instance_starts, geometry.instances);
+                                 grid.occupancy(), grid.offsets(), grid.counts(), grid.references(),
+                                 geometry.triangles, geometry.instance_starts, geometry.instances);
                 } else {
                     const auto& brute_force = static_cast<const BruteForce&>(structure);
                     launch_items(queue, kernels.brute_force, n, values..., scene, batch.rays, batch.skip,

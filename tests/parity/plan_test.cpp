@@ -47,7 +47,8 @@ TEST_P(Plan, IsExact) {
                 EXPECT_EQ(grid.size_bytes(), table_bytes);
                 EXPECT_EQ(opened.memory_in_use_bytes() - before,
                           grid.offsets().size_bytes() + grid.counts().size_bytes() +
-                              grid.references().size_bytes() + grid.geometry().triangles.size_bytes())
+                              grid.references().size_bytes() + grid.occupancy().size_bytes() +
+                              grid.geometry().triangles.size_bytes())
                     << "what is left beyond the scene is the grid alone";
                 std::uint64_t sum = 0;
                 for (const setka::Section& section : grid.sections()) sum += section.size_bytes;

@@ -12,15 +12,39 @@
 #include <iostream>
 #include <vector>
 
+#include "accel/occupancy.hpp"
 #include "accel/world_geometry.hpp"
 #include "save/file_maker.hpp"
 #include "setka/save.hpp"
+#include "setka/tracer.hpp"
 #include "support/random.hpp"
 #include "support/rays.hpp"
 
 namespace {
 
 using namespace save_test;
+
+/// A model's tables as walks take them, with the occupancy that follows from its offsets.
+class WalkedTables {
+  public:
+    explicit WalkedTables(const Model& model)
+        : model_(model), occupancy_(setka::occupancy_words(model.header.dims)) {
+        const sk_u32 fine = sk_coarse_start(sk_block_dims(sk_cell_dims(model.header)));
+        for (sk_u32 w = 0; w < occupancy_.size(); ++w)
+            if (w < fine) sk_occupancy_fine(w, model.header, model.offsets.data(), occupancy_.data());
+            else sk_occupancy_coarse(w - fine, model.header, occupancy_.data());
+    }
+
+    [[nodiscard]] sk_grid_tables get() const {
+        return sk_make_tables(occupancy_.data(), model_.offsets.data(), model_.counts.data(),
+                              model_.references.data(), model_.triangles.data(),
+                              model_.instance_starts.data(), model_.instances.data());
+    }
+
+  private:
+    const Model& model_;
+    std::vector<sk_u32> occupancy_;
+};
 
 /// Walks every ray through the tables with the kernels' own body, on the host: under a sanitizer, a read
 /// outside shows.
@@ -29,15 +53,14 @@ void walk(const Model& model, std::span<const setka::Ray> rays) {
     geometry.bounds = model.bounds;
     geometry.triangle_count = model.header.triangle_count;
     geometry.instance_count = model.header.instance_count;
+    const WalkedTables tables(model);
     for (const std::uint32_t mask : {0x7fffffffu, 4u}) {
         const sk_trace_params params = setka::trace_params(geometry, mask);  // looks at every instance
         for (const setka::Ray& ray : rays)
-            for (const int branch_free : {0, 1}) {
+            for (const auto step : {setka::GridStep::Dda, setka::GridStep::BranchFree}) {
                 const sk_working_ray working = sk_prepare_ray(params, ray);
-                const sk_walk walk = sk_walk_grid(model.header, params, working, model.offsets.data(),
-                                                  model.counts.data(), model.references.data(),
-                                                  model.triangles.data(), model.instance_starts.data(),
-                                                  model.instances.data(), SETKA_NO_HIT, branch_free, 0);
+                const auto rule = step == setka::GridStep::Dda ? sk_walk_grid : sk_walk_cells;
+                const sk_walk walk = rule(model.header, params, working, tables.get(), SETKA_NO_HIT, 0);
                 const SetkaHit hit = sk_make_hit(params, working, model.instance_starts.data(), walk.best);
                 ASSERT_LE(walk.cost.steps,
                           model.header.dims[0] + model.header.dims[1] + model.header.dims[2]);
@@ -52,11 +75,10 @@ void walk_all(const Model& model, std::span<const setka::Ray> rays) {
     geometry.bounds = model.bounds;
     geometry.triangle_count = model.header.triangle_count;
     geometry.instance_count = model.header.instance_count;
+    const WalkedTables tables(model);
     const sk_trace_params params = setka::trace_params(geometry, 0x7fffffffu);
     const auto find = [&](const sk_working_ray& ray, SetkaHit* hits, std::uint32_t most, const int write) {
-        return sk_walk_grid_all(model.header, params, ray, model.offsets.data(), model.counts.data(),
-                                model.references.data(), model.triangles.data(), model.instance_starts.data(),
-                                model.instances.data(), SETKA_NO_HIT, hits, most, write);
+        return sk_walk_grid_all(model.header, params, ray, tables.get(), SETKA_NO_HIT, hits, most, write);
     };
     for (const setka::Ray& ray : rays) {
         const sk_working_ray working = sk_prepare_ray(params, ray);

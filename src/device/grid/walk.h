@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /**
- * Which cells does a ray pass, and what does it hit in them? The walk through the uniform grid, with two rules for the next
- * cell: the smallest of three exit parameters (Amanatides & Woo 1987), and the signs of cross products without a branch or a
- * division (Maltsev & Mikhaylyuk 2012, section 3). src/README.md ("Traversal") has the argument why neither misses a hit.
+ * Which cells does a ray pass, and what does it hit in them? Two walks through the uniform grid. One leaves a cell by the smallest
+ * of three exit parameters (Amanatides & Woo 1987), and empty blocks of cells as if they were one; the other moves from cell to
+ * cell by the signs of cross products, without a branch or a division (Maltsev & Mikhaylyuk 2012, section 3). src/README.md
+ * ("Traversal") has the argument why neither misses a hit.
  */
 #ifndef SETKA_DEVICE_GRID_WALK_H
 #define SETKA_DEVICE_GRID_WALK_H
 
 #include "device/grid/cells.h"
+#include "device/grid/occupancy.h"
 #include "device/trace/triangle.h"
 
 /**
@@ -17,6 +19,9 @@
 #define SK_NEVER 0x1p30f
 /** What turns SK_NEVER into a parameter beyond any other for an axis that the ray is parallel to. */
 #define SK_PARALLEL_INVERSE 0x1p90f
+
+/** The most moves that a walk makes before it looks whether others of its group have a list to test. */
+#define SK_TURNS 8u
 
 typedef struct sk_walk {
     sk_best best;
@@ -48,11 +53,15 @@ SK_FUNCTION sk_axis sk_make_axis(float origin, float direction, float working_di
     return r;
 }
 
-SK_FUNCTION float sk_exit(sk_axis a) {
-    const float face = a.forward ? (float)(a.index + 1u) - a.origin : a.origin - (float)a.index;
-    const int outermost = a.index == (a.forward ? a.dim - 1u : 0u);
+/** The way to the face through which the ray leaves the cube of 2^shift cells around its cell. */
+SK_FUNCTION float sk_exit_of(sk_axis a, sk_u32 shift) {
+    const sk_u32 low = a.index >> shift << shift, high = low + (1u << shift);
+    const float face = a.forward ? (float)high - a.origin : a.origin - (float)low;
+    const int outermost = a.forward ? high >= a.dim : low == 0u;
     return outermost || a.speed == 0.0f ? SK_NEVER : face;
 }
+
+SK_FUNCTION float sk_exit(sk_axis a) { return sk_exit_of(a, 0u); }
 
 /** The paper's S: 1 for negative numbers, else 0. */
 SK_FUNCTION sk_u32 sk_negative(float f) { return (sk_u32)(f < 0.0f); }
@@ -75,66 +84,209 @@ SK_FUNCTION sk_span sk_limit(sk_working_ray ray) {
     return r;
 }
 
+/** The tables of a grid and what its walks need of the scene. */
+typedef struct sk_grid_tables {
+    SK_GLOBAL const sk_u32* occupancy;
+    SK_GLOBAL const sk_i32* offsets;
+    SK_GLOBAL const sk_u32* counts;
+    SK_GLOBAL const sk_u32* references;
+    SK_GLOBAL const float* triangles;
+    SK_GLOBAL const sk_u32* instance_starts;
+    SK_GLOBAL const SetkaInstance* instances;
+} sk_grid_tables;
+
+SK_FUNCTION sk_grid_tables sk_make_tables(SK_GLOBAL const sk_u32* occupancy, SK_GLOBAL const sk_i32* offsets,
+                                          SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* references,
+                                          SK_GLOBAL const float* triangles,
+                                          SK_GLOBAL const sk_u32* instance_starts,
+                                          SK_GLOBAL const SetkaInstance* instances) {
+    sk_grid_tables r;
+    r.occupancy = occupancy;
+    r.offsets = offsets;
+    r.counts = counts;
+    r.references = references;
+    r.triangles = triangles;
+    r.instance_starts = instance_starts;
+    r.instances = instances;
+    return r;
+}
+
 /**
- * Walks the grid, past the triangle `skip`. `branch_free` and `any` are compile-time choices of the entry: the paper's step, and to stop at the first
- * hit. The loop ends: each turn at least one index moves towards its last value, where its exit is out of reach.
+ * The best of `best` and the hits in a cell's list, past the triangle `skip`. The accurate test is long and few triangles come to
+ * it, so it waits until the list is through or the next candidate is there: work-items that run in step do it together.
+ */
+SK_FUNCTION sk_best sk_test_cell(sk_grid_tables grid, sk_trace_params params, sk_working_ray ray, sk_u32 cell,
+                                 sk_u32 count, sk_u32 skip, sk_best best) {
+    SK_GLOBAL const sk_u32* list = grid.references + (sk_u32)grid.offsets[cell];
+    sk_best r = best;
+    sk_u32 k = 0u, candidate = SETKA_NO_HIT;
+    do {
+        sk_u32 next = SETKA_NO_HIT;
+        while (k < count && next == SETKA_NO_HIT) {
+            const sk_u32 number = list[k];
+            k += 1u;
+            if (sk_may_hit(ray, grid.triangles + (size_t)number * 9u, 1u)) {
+                if (candidate == SETKA_NO_HIT)
+                    candidate = number;
+                else
+                    next = number;
+            }
+        }
+        if (candidate != SETKA_NO_HIT) {
+            const sk_best hit = sk_test_triangle(ray, grid.triangles + (size_t)candidate * 9u, 1u, candidate, r);
+            if (hit.triangle != r.triangle && candidate != skip &&
+                sk_is_visible(params, grid.instance_starts, grid.instances, candidate))
+                r = hit;
+        }
+        candidate = next;
+    } while (candidate != SETKA_NO_HIT);
+    return r;
+}
+
+/** Where a walk is. */
+typedef struct sk_place {
+    sk_axis x, y, z;
+    int walking;
+} sk_place;
+
+SK_FUNCTION sk_place sk_enter(SetkaGridHeader grid, sk_working_ray ray, sk_span span) {
+    const sk_vec3 o = sk_to_cells(grid, ray.o), d = sk_scale(ray.d, grid.inverse_cell_size);
+    sk_place r;
+    r.x = sk_make_axis(o.x, d.x, ray.d.x, span.w0, grid.dims[0]);
+    r.y = sk_make_axis(o.y, d.y, ray.d.y, span.w0, grid.dims[1]);
+    r.z = sk_make_axis(o.z, d.z, ray.d.z, span.w0, grid.dims[2]);
+    r.walking = span.meets;
+    return r;
+}
+
+SK_FUNCTION sk_u32 sk_cell_number(SetkaGridHeader grid, sk_place at) {
+    return (at.z.index * grid.dims[1] + at.y.index) * grid.dims[0] + at.x.index;
+}
+
+/**
+ * How large an empty cube around the cell the ray may leave in one step: 2^n cells wide for the n returned, or SK_OCCUPIED if the
+ * cell has a list. Only what lies ahead has to be empty.
+ */
+SK_FUNCTION sk_u32 sk_clearance(SetkaGridHeader grid, SK_GLOBAL const sk_u32* occupancy, sk_place at) {
+    const sk_dims blocks = sk_block_dims(sk_cell_dims(grid));
+    const sk_u32 x = at.x.index, y = at.y.index, z = at.z.index;
+    const sk_u64 bits = sk_block_bits(occupancy, blocks, x, y, z);
+    sk_u32 shift = 2u;
+    if (bits == 0u) {
+        const sk_u64 coarse = sk_block_bits(occupancy + sk_coarse_start(blocks), sk_block_dims(blocks), x >> 2, y >> 2, z >> 2);
+        const sk_u64 ahead = sk_bits_ahead(x >> 2, y >> 2, z >> 2, at.x.forward, at.y.forward, at.z.forward);
+        if ((coarse & ahead) == 0u) shift = 4u;
+    } else if ((bits >> ((z & 3u) * 16u + (y & 3u) * 4u + (x & 3u)) & 1u) != 0u) {
+        shift = SK_OCCUPIED;
+    } else if ((bits & sk_bits_ahead(x, y, z, at.x.forward, at.y.forward, at.z.forward)) != 0u) {
+        shift = 0u;
+    }
+    return shift;
+}
+
+/**
+ * The index on an axis at which the ray is at w, when it leaves a cube of 2^shift cells through a face of another axis: in the cube, and
+ * never behind the index that it has, whatever rounding says.
+ */
+SK_FUNCTION sk_u32 sk_land(sk_axis a, sk_u32 shift, float w) {
+    const sk_u32 low = a.index >> shift << shift, high = low + (1u << shift) - 1u;
+    const float way = w * a.speed;
+    const sk_u32 cell = sk_cell(a.forward ? a.origin + way : a.origin - way, a.dim);
+    return a.forward ? sk_min_u32(sk_max_u32(cell, a.index), sk_min_u32(high, a.dim - 1u))
+                     : sk_max_u32(sk_min_u32(cell, a.index), low);
+}
+
+/** The index behind the face through which the ray leaves the cube. */
+SK_FUNCTION sk_u32 sk_pass(sk_axis a, sk_u32 shift) {
+    const sk_u32 low = a.index >> shift << shift;
+    return a.forward ? low + (1u << shift) : low - 1u;
+}
+
+/** Leaves the cube of 2^shift cells around the ray's cell, unless nothing of interest is beyond it. */
+SK_FUNCTION sk_place sk_leave(sk_place at, sk_u32 shift, float last) {
+    const float wx = sk_exit_of(at.x, shift) * at.x.inverse;
+    const float wy = sk_exit_of(at.y, shift) * at.y.inverse;
+    const float wz = sk_exit_of(at.z, shift) * at.z.inverse;
+    const int through_x = wx <= wy && wx <= wz, through_y = !through_x && wy <= wz;
+    const float w = through_x ? wx : through_y ? wy : wz;
+    sk_place r = at;
+    if (last <= w) {
+        r.walking = 0;
+    } else {
+        r.x.index = through_x ? sk_pass(at.x, shift) : sk_land(at.x, shift, w);
+        r.y.index = through_y ? sk_pass(at.y, shift) : sk_land(at.y, shift, w);
+        r.z.index = through_x || through_y ? sk_land(at.z, shift, w) : sk_pass(at.z, shift);
+    }
+    return r;
+}
+
+/**
+ * Walks the grid, past empty space in large steps and past the triangle `skip`. `any`, a compile-time choice of the entry, stops at the
+ * first hit. The walk ends: each turn at least one index moves towards its last value, where its exit is out of reach,
+ * and none moves back.
  */
 SK_FUNCTION sk_walk sk_walk_grid(SetkaGridHeader grid, sk_trace_params params, sk_working_ray ray,
-                                 SK_GLOBAL const sk_i32* offsets, SK_GLOBAL const sk_u32* counts,
-                                 SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
-                                 SK_GLOBAL const sk_u32* instance_starts, SK_GLOBAL const SetkaInstance* instances,
-                                 sk_u32 skip, const int branch_free, const int any) {
+                                 sk_grid_tables tables, sk_u32 skip, const int any) {
     const sk_span span = sk_limit(ray);
-    const sk_vec3 o = sk_to_cells(grid, ray.o), d = sk_scale(ray.d, grid.inverse_cell_size);
-    sk_axis x = sk_make_axis(o.x, d.x, ray.d.x, span.w0, grid.dims[0]);
-    sk_axis y = sk_make_axis(o.y, d.y, ray.d.y, span.w0, grid.dims[1]);
-    sk_axis z = sk_make_axis(o.z, d.z, ray.d.z, span.w0, grid.dims[2]);
-    int walking = span.meets;
+    sk_place at = sk_enter(grid, ray, span);
+    float last = span.w1; /* nothing beyond this parameter is of interest */
+    sk_walk r;
+    r.best = sk_no_hit();
+    r.cost.steps = 0u;
+    r.cost.tests = 0u;
+    while (at.walking) {
+        sk_u32 shift = 0u;
+        /* Work-items that run in step wait for the last one here: not for long. */
+        for (sk_u32 turn = 0u; turn < SK_TURNS && at.walking && shift != SK_OCCUPIED; ++turn) {
+            shift = sk_clearance(grid, tables.occupancy, at);
+            r.cost.steps += 1u;
+            if (shift != SK_OCCUPIED) at = sk_leave(at, shift, last);
+        }
+        if (shift == SK_OCCUPIED) {
+            const sk_u32 cell = sk_cell_number(grid, at);
+            const sk_u32 count = tables.counts[cell];
+            r.best = sk_test_cell(tables, params, ray, cell, count, skip, r.best);
+            r.cost.tests += count;
+            const int found = r.best.triangle != SETKA_NO_HIT;
+            if (found) last = sk_min(r.best.w, span.w1);
+            at = sk_leave(at, 0u, last);
+            if (any && found) at.walking = 0;
+        }
+    }
+    return r;
+}
+
+/** The same from cell to cell, by the paper's rule. */
+SK_FUNCTION sk_walk sk_walk_cells(SetkaGridHeader grid, sk_trace_params params, sk_working_ray ray,
+                                  sk_grid_tables tables, sk_u32 skip, const int any) {
+    const sk_span span = sk_limit(ray);
+    sk_place at = sk_enter(grid, ray, span);
+    sk_axis x = at.x, y = at.y, z = at.z;
+    int walking = at.walking;
     sk_walk r;
     r.best = sk_no_hit();
     r.cost.steps = 0u;
     r.cost.tests = 0u;
     while (walking) {
         const sk_u32 cell = (z.index * grid.dims[1] + y.index) * grid.dims[0] + x.index;
-        const sk_i32 offset = offsets[cell];
         r.cost.steps += 1u;
-        if (offset >= 0) {
-            const sk_u32 count = counts[cell];
-            for (sk_u32 k = 0u; k < count; ++k) {
-                const sk_u32 number = references[(sk_u32)offset + k];
-                const sk_best next = sk_test_triangle(ray, triangles + (size_t)number * 9u, 1u, number, r.best);
-                if (next.triangle != r.best.triangle && number != skip &&
-                    sk_is_visible(params, instance_starts, instances, number))
-                    r.best = next;
-            }
+        if (tables.offsets[cell] >= 0) {
+            const sk_u32 count = tables.counts[cell];
+            r.best = sk_test_cell(tables, params, ray, cell, count, skip, r.best);
             r.cost.tests += count;
         }
         const float ex = sk_exit(x), ey = sk_exit(y), ez = sk_exit(z);
         const int found = r.best.triangle != SETKA_NO_HIT;
-        /* Nothing beyond this parameter is of interest. */
         const float last = found ? sk_min(r.best.w, span.w1) : span.w1;
-        if (branch_free) {
-            const float xy = x.speed * ey - y.speed * ex;
-            const float xz = x.speed * ez - z.speed * ex;
-            const float yz = y.speed * ez - z.speed * ey;
-            if (last * x.speed <= ex && last * y.speed <= ey && last * z.speed <= ez) {
-                walking = 0;
-            } else {
-                x.index = sk_advance(x, (1u - sk_negative(xy)) * (1u - sk_negative(xz)));
-                y.index = sk_advance(y, (1u - sk_negative(-xy)) * (1u - sk_negative(yz)));
-                z.index = sk_advance(z, (1u - sk_negative(-xz)) * (1u - sk_negative(-yz)));
-            }
+        const float xy = x.speed * ey - y.speed * ex;
+        const float xz = x.speed * ez - z.speed * ex;
+        const float yz = y.speed * ez - z.speed * ey;
+        if (last * x.speed <= ex && last * y.speed <= ey && last * z.speed <= ez) {
+            walking = 0;
         } else {
-            const float wx = ex * x.inverse, wy = ey * y.inverse, wz = ez * z.inverse;
-            if (last <= wx && last <= wy && last <= wz) {
-                walking = 0;
-            } else if (wx <= wy && wx <= wz) {
-                x.index = sk_advance(x, 1u);
-            } else if (wy <= wz) {
-                y.index = sk_advance(y, 1u);
-            } else {
-                z.index = sk_advance(z, 1u);
-            }
+            x.index = sk_advance(x, (1u - sk_negative(xy)) * (1u - sk_negative(xz)));
+            y.index = sk_advance(y, (1u - sk_negative(-xy)) * (1u - sk_negative(yz)));
+            z.index = sk_advance(z, (1u - sk_negative(-xz)) * (1u - sk_negative(-yz)));
         }
         if (any && found) walking = 0;
     }

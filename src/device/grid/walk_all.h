@@ -17,32 +17,27 @@
  * cell's are ordered for themselves, and the walk ends with the cell that has the last one wanted.
  */
 SK_FUNCTION sk_u32 sk_walk_grid_all(SetkaGridHeader grid, sk_trace_params params, sk_working_ray ray,
-                                    SK_GLOBAL const sk_i32* offsets, SK_GLOBAL const sk_u32* counts,
-                                    SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
-                                    SK_GLOBAL const sk_u32* instance_starts,
-                                    SK_GLOBAL const SetkaInstance* instances, sk_u32 skip,
-                                    SK_GLOBAL SetkaHit* hits, sk_u32 most, const int write) {
+                                    sk_grid_tables tables, sk_u32 skip, SK_GLOBAL SetkaHit* hits, sk_u32 most,
+                                    const int write) {
     const sk_span span = sk_limit(ray);
-    const sk_vec3 o = sk_to_cells(grid, ray.o), d = sk_scale(ray.d, grid.inverse_cell_size);
-    sk_axis x = sk_make_axis(o.x, d.x, ray.d.x, span.w0, grid.dims[0]);
-    sk_axis y = sk_make_axis(o.y, d.y, ray.d.y, span.w0, grid.dims[1]);
-    sk_axis z = sk_make_axis(o.z, d.z, ray.d.z, span.w0, grid.dims[2]);
-    int walking = span.meets && most != 0u;
+    const sk_place start = sk_enter(grid, ray, span);
+    sk_axis x = start.x, y = start.y, z = start.z;
+    int walking = start.walking && most != 0u;
     sk_u32 found = 0u;
     float w_in = sk_bits_float(0xff800000u); /* the first cell owns whatever is before it */
     while (walking) {
         const sk_u32 cell = (z.index * grid.dims[1] + y.index) * grid.dims[0] + x.index;
-        const sk_i32 offset = offsets[cell];
+        const sk_i32 offset = tables.offsets[cell];
         const float wx = sk_exit(x) * x.inverse, wy = sk_exit(y) * y.inverse, wz = sk_exit(z) * z.inverse;
         const float w_out = sk_min(wx, sk_min(wy, wz));
         const int is_last = span.w1 <= w_out; /* and owns whatever is behind it */
         if (offset >= 0 && (w_in < w_out || is_last)) {
-            const sk_u32 count = counts[cell], before = found;
+            const sk_u32 count = tables.counts[cell], before = found;
             for (sk_u32 k = 0u; k < count; ++k) {
-                const sk_u32 number = references[(sk_u32)offset + k];
-                const sk_best hit = sk_test_triangle(ray, triangles + (size_t)number * 9u, 1u, number, sk_no_hit());
+                const sk_u32 number = tables.references[(sk_u32)offset + k];
+                const sk_best hit = sk_test_triangle(ray, tables.triangles + (size_t)number * 9u, 1u, number, sk_no_hit());
                 if (hit.triangle != SETKA_NO_HIT && hit.w > w_in && (hit.w <= w_out || is_last) && number != skip &&
-                    sk_is_visible(params, instance_starts, instances, number))
+                    sk_is_visible(params, tables.instance_starts, tables.instances, number))
                     found = write ? before + sk_list_hit(hits + before, found - before, most - before, hit)
                                   : found + 1u;
             }

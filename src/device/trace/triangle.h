@@ -72,35 +72,55 @@ SK_FUNCTION int sk_side(float edge, float xa, float ya, float xb, float yb) {
     return xa > xb ? 1 : xa < xb ? -1 : 0;
 }
 
+/** A triangle as the ray sees it: along the ray, and across it with the ray at (0, 0). */
+typedef struct sk_view {
+    float a0, a1, a2, x0, x1, x2, y0, y1, y2;
+} sk_view;
+
 /**
- * The best of `best` and the hit of triangle `number`, whose vertex k has the components vertices[3 * stride * k],
- * vertices[3 * stride * k + stride], …: stride 1 for packed triangles, more where triangles lie side by side.
+ * Vertex k has the components vertices[3 * stride * k], vertices[3 * stride * k + stride], …: stride 1 for packed triangles, more
+ * where triangles lie side by side.
  */
+SK_FUNCTION sk_view sk_view_triangle(sk_working_ray ray, SK_GLOBAL const float* vertices, sk_u32 stride) {
+    const sk_u32 kx = ray.kx * stride, ky = ray.ky * stride, kz = ray.kz * stride, next = 3u * stride;
+    sk_view r;
+    r.a0 = vertices[kz] - ray.oz;
+    r.a1 = vertices[next + kz] - ray.oz;
+    r.a2 = vertices[2u * next + kz] - ray.oz;
+    r.x0 = (vertices[kx] - ray.ox) - ray.sx * r.a0;
+    r.y0 = (vertices[ky] - ray.oy) - ray.sy * r.a0;
+    r.x1 = (vertices[next + kx] - ray.ox) - ray.sx * r.a1;
+    r.y1 = (vertices[next + ky] - ray.oy) - ray.sy * r.a1;
+    r.x2 = (vertices[2u * next + kx] - ray.ox) - ray.sx * r.a2;
+    r.y2 = (vertices[2u * next + ky] - ray.oy) - ray.sy * r.a2;
+    return r;
+}
+
+/** 0 if the ray passes beside the triangle, by plain edge functions, whose signs are never wrong. */
+SK_FUNCTION int sk_may_pass(sk_view p) {
+    return !sk_mixed_signs(p.x2 * p.y1 - p.y2 * p.x1, p.x0 * p.y2 - p.y0 * p.x2, p.x1 * p.y0 - p.y1 * p.x0);
+}
+
+SK_FUNCTION int sk_may_hit(sk_working_ray ray, SK_GLOBAL const float* vertices, sk_u32 stride) {
+    return sk_may_pass(sk_view_triangle(ray, vertices, stride));
+}
+
+/** The best of `best` and the hit of triangle `number`, with vertices as for sk_view_triangle. */
 SK_FUNCTION sk_best sk_test_triangle(sk_working_ray ray, SK_GLOBAL const float* vertices, sk_u32 stride, sk_u32 number,
                                      sk_best best) {
-    const sk_u32 kx = ray.kx * stride, ky = ray.ky * stride, kz = ray.kz * stride, next = 3u * stride;
-    const float a0 = vertices[kz] - ray.oz;
-    const float a1 = vertices[next + kz] - ray.oz;
-    const float a2 = vertices[2u * next + kz] - ray.oz;
-    const float x0 = (vertices[kx] - ray.ox) - ray.sx * a0, y0 = (vertices[ky] - ray.oy) - ray.sy * a0;
-    const float x1 = (vertices[next + kx] - ray.ox) - ray.sx * a1, y1 = (vertices[next + ky] - ray.oy) - ray.sy * a1;
-    const float x2 = (vertices[2u * next + kx] - ray.ox) - ray.sx * a2;
-    const float y2 = (vertices[2u * next + ky] - ray.oy) - ray.sy * a2;
-    float u = x2 * y1 - y2 * x1;
-    float v = x0 * y2 - y0 * x2;
-    float w = x1 * y0 - y1 * x0;
+    const sk_view p = sk_view_triangle(ray, vertices, stride);
     sk_best r = best;
-    if (!sk_mixed_signs(u, v, w)) {
+    if (sk_may_pass(p)) {
         const float unit = ray.unit;
-        const float p0 = x0 * unit, p1 = x1 * unit, p2 = x2 * unit;
-        const float q0 = y0 * unit, q1 = y1 * unit, q2 = y2 * unit;
-        u = sk_accurate_difference(p2, q1, q2, p1);
-        v = sk_accurate_difference(p0, q2, q0, p2);
-        w = sk_accurate_difference(p1, q0, q1, p0);
+        const float p0 = p.x0 * unit, p1 = p.x1 * unit, p2 = p.x2 * unit;
+        const float q0 = p.y0 * unit, q1 = p.y1 * unit, q2 = p.y2 * unit;
+        const float u = sk_accurate_difference(p2, q1, q2, p1);
+        const float v = sk_accurate_difference(p0, q2, q0, p2);
+        const float w = sk_accurate_difference(p1, q0, q1, p0);
         const int side = sk_side(u, p1, q1, p2, q2);
         if (side != 0 && side == sk_side(v, p2, q2, p0, q0) && side == sk_side(w, p0, q0, p1, q1)) {
             const float det = (u + v) + w;
-            const float at = ((u * (ray.sz * a0) + v * (ray.sz * a1)) + w * (ray.sz * a2)) / det;
+            const float at = ((u * (ray.sz * p.a0) + v * (ray.sz * p.a1)) + w * (ray.sz * p.a2)) / det;
             const float t = sk_user_t(ray, at);
             if (t >= ray.tmin && t <= ray.tmax && sk_is_finite(t) &&
                 (at < best.w || (at == best.w && number < best.triangle) || best.triangle == SETKA_NO_HIT)) {
