@@ -11,6 +11,7 @@
 #include "setka/error.hpp"
 #include "setka/grid.hpp"
 #include "trace/hit_memory.hpp"
+#include "trace/host_rays.hpp"
 
 namespace setka {
 
@@ -144,47 +145,40 @@ AllHits Tracer::all_hits(Queue& queue, const Structure& structure, const RayBatc
     return result;
 }
 
-namespace {
-
-/// Rays and primitives of the host as a batch that uses their memory in place where it can.
-RayBatch wrap(Queue& queue, std::span<const Ray> rays, std::span<const Primitive> skip) {
-    check_batch(rays.size(), skip.size());
-    return {queue.wrap(rays, "rays"), queue.wrap(skip, "primitives to skip")};
-}
-
-}  // namespace
-
 std::vector<Hit> Tracer::closest_hit(Queue& queue, const Structure& structure, std::span<const Ray> rays,
                                      std::span<const Primitive> skip) const {
-    std::vector<Hit> hits(rays.size());
-    const auto device_hits = queue.wrap(std::span(hits), "hits");
-    closest_hit(queue, structure, wrap(queue, rays, skip), device_hits);
-    queue.download(device_hits, std::span(hits));
-    return hits;
+    check_batch(rays.size(), skip.size());
+    return trace_from_host<Hit>(queue, rays, skip, "hits", [&](const RayBatch& batch, const Buffer<Hit>& hits) {
+        closest_hit(queue, structure, batch, hits);
+    });
 }
 
 std::vector<std::uint32_t> Tracer::any_hit(Queue& queue, const Structure& structure, std::span<const Ray> rays,
                                            std::span<const Primitive> skip) const {
-    std::vector<std::uint32_t> occluded(rays.size());
-    const auto device_occluded = queue.wrap(std::span(occluded), "occluded");
-    any_hit(queue, structure, wrap(queue, rays, skip), device_occluded);
-    queue.download(device_occluded, std::span(occluded));
-    return occluded;
+    check_batch(rays.size(), skip.size());
+    return trace_from_host<std::uint32_t>(queue, rays, skip, "occluded",
+                                          [&](const RayBatch& batch, const Buffer<std::uint32_t>& occluded) {
+                                              any_hit(queue, structure, batch, occluded);
+                                          });
 }
 
 std::vector<std::uint32_t> Tracer::count_hits(Queue& queue, const Structure& structure, std::span<const Ray> rays,
                                               const AllHitsOptions& options, std::span<const Primitive> skip) const {
-    std::vector<std::uint32_t> counts(rays.size());
-    const auto device_counts = queue.wrap(std::span(counts), "hit counts");
-    count_hits(queue, structure, wrap(queue, rays, skip), device_counts, options);
-    queue.download(device_counts, std::span(counts));
-    return counts;
+    check_batch(rays.size(), skip.size());
+    return trace_from_host<std::uint32_t>(queue, rays, skip, "hit counts",
+                                          [&](const RayBatch& batch, const Buffer<std::uint32_t>& counts) {
+                                              count_hits(queue, structure, batch, counts, options);
+                                          });
 }
 
 HitLists Tracer::all_hits(Queue& queue, const Structure& structure, std::span<const Ray> rays,
                           const AllHitsOptions& options, std::span<const Primitive> skip) const {
-    const AllHits all = all_hits(queue, structure, wrap(queue, rays, skip), options);
-    return {queue.download(all.offsets), queue.download(all.hits)};
+    check_batch(rays.size(), skip.size());
+    WaitIfThrown wait(queue);
+    const AllHits all = all_hits(queue, structure, wrap_batch(queue, rays, skip), options);
+    HitLists lists{queue.download(all.offsets), queue.download(all.hits)};
+    wait.done();
+    return lists;
 }
 
 }  // namespace setka
