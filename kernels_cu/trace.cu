@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/** Entries of the tracers, one a structure, query and step; the bodies are in src/device/trace and src/device/grid/walk.h. */
+/** Entries of the tracers, one a structure, query and step; the bodies are in src/device/trace and src/device/grid/walk.h. Those with `first` do rays first to n - 1. */
 #include "platform.h"
 
 #include "device/grid/walk.h"
@@ -11,11 +11,11 @@ SK_KERNEL void trace_pack(sk_u32 n, sk_u32 triangle_count, SK_GLOBAL const float
     if (i < n) sk_trace_pack(i, triangle_count, triangles, packets);
 }
 
-SK_KERNEL void trace_brute_closest(sk_u32 n, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
+SK_KERNEL void trace_brute_closest(sk_u32 n, sk_u32 first, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
                                    SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL SetkaHit* hits,
                                    SK_GLOBAL const float* packets, SK_GLOBAL const sk_u32* instance_starts,
                                    SK_GLOBAL const SetkaInstance* instances) {
-    const sk_u32 i = sk_global_id();
+    const sk_u32 i = first + sk_global_id();
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
         const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
@@ -24,11 +24,11 @@ SK_KERNEL void trace_brute_closest(sk_u32 n, sk_trace_params params, SK_GLOBAL c
     }
 }
 
-SK_KERNEL void trace_brute_any(sk_u32 n, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
+SK_KERNEL void trace_brute_any(sk_u32 n, sk_u32 first, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
                                SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL sk_u32* occluded,
                                SK_GLOBAL const float* packets, SK_GLOBAL const sk_u32* instance_starts,
                                SK_GLOBAL const SetkaInstance* instances) {
-    const sk_u32 i = sk_global_id();
+    const sk_u32 i = first + sk_global_id();
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
         const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
@@ -38,11 +38,11 @@ SK_KERNEL void trace_brute_any(sk_u32 n, sk_trace_params params, SK_GLOBAL const
 }
 
 SK_KERNEL void trace_grid_closest_dda(
-    sk_u32 n, SetkaGridHeader grid, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
+    sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
     SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL SetkaHit* hits, SK_GLOBAL const sk_i32* offsets,
     SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
     SK_GLOBAL const sk_u32* instance_starts, SK_GLOBAL const SetkaInstance* instances) {
-    const sk_u32 i = sk_global_id();
+    const sk_u32 i = first + sk_global_id();
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
         const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
@@ -53,11 +53,11 @@ SK_KERNEL void trace_grid_closest_dda(
 }
 
 SK_KERNEL void trace_grid_closest_free(
-    sk_u32 n, SetkaGridHeader grid, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
+    sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
     SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL SetkaHit* hits, SK_GLOBAL const sk_i32* offsets,
     SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
     SK_GLOBAL const sk_u32* instance_starts, SK_GLOBAL const SetkaInstance* instances) {
-    const sk_u32 i = sk_global_id();
+    const sk_u32 i = first + sk_global_id();
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
         const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
@@ -68,11 +68,11 @@ SK_KERNEL void trace_grid_closest_free(
 }
 
 SK_KERNEL void trace_grid_any_dda(
-    sk_u32 n, SetkaGridHeader grid, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
+    sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
     SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL sk_u32* occluded, SK_GLOBAL const sk_i32* offsets,
     SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
     SK_GLOBAL const sk_u32* instance_starts, SK_GLOBAL const SetkaInstance* instances) {
-    const sk_u32 i = sk_global_id();
+    const sk_u32 i = first + sk_global_id();
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
         const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
@@ -83,11 +83,11 @@ SK_KERNEL void trace_grid_any_dda(
 }
 
 SK_KERNEL void trace_grid_any_free(
-    sk_u32 n, SetkaGridHeader grid, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
+    sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
     SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL sk_u32* occluded, SK_GLOBAL const sk_i32* offsets,
     SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
     SK_GLOBAL const sk_u32* instance_starts, SK_GLOBAL const SetkaInstance* instances) {
-    const sk_u32 i = sk_global_id();
+    const sk_u32 i = first + sk_global_id();
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
         const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
@@ -98,11 +98,11 @@ SK_KERNEL void trace_grid_any_free(
 }
 
 SK_KERNEL void trace_grid_cost_dda(
-    sk_u32 n, SetkaGridHeader grid, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
+    sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
     SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL SetkaTraceCost* costs, SK_GLOBAL const sk_i32* offsets,
     SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
     SK_GLOBAL const sk_u32* instance_starts, SK_GLOBAL const SetkaInstance* instances) {
-    const sk_u32 i = sk_global_id();
+    const sk_u32 i = first + sk_global_id();
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
         const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
@@ -113,11 +113,11 @@ SK_KERNEL void trace_grid_cost_dda(
 }
 
 SK_KERNEL void trace_grid_cost_free(
-    sk_u32 n, SetkaGridHeader grid, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
+    sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
     SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL SetkaTraceCost* costs, SK_GLOBAL const sk_i32* offsets,
     SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
     SK_GLOBAL const sk_u32* instance_starts, SK_GLOBAL const SetkaInstance* instances) {
-    const sk_u32 i = sk_global_id();
+    const sk_u32 i = first + sk_global_id();
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
         const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);

@@ -55,10 +55,11 @@ Buffer<std::uint64_t> enqueue_exclusive_scan(Queue& queue, const Buffer<std::uin
     return sums;
 }
 
+std::uint64_t total_of(Queue& queue, const Buffer<std::uint64_t>& sums) { return queue.download(sums).back(); }
+
 std::uint64_t exclusive_scan(Queue& queue, const Buffer<std::uint32_t>& counts, std::uint32_t n,
                              const Buffer<std::uint32_t>& offsets, const char* what) {
-    const Buffer<std::uint64_t> sums = enqueue_exclusive_scan(queue, counts, n, offsets);
-    const std::uint64_t total = queue.download(sums).back();
+    const std::uint64_t total = total_of(queue, enqueue_exclusive_scan(queue, counts, n, offsets));
     constexpr std::uint64_t limit = std::numeric_limits<std::int32_t>::max();
     if (total > limit)
         throw Error(ErrorCategory::OutOfMemory, "the scene needs " + std::to_string(total) + " " + what +

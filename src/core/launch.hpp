@@ -18,6 +18,12 @@ void launch_items(Queue& queue, Kernel kernel, std::uint32_t items, const Ts&...
     queue.impl().launch(kernel, groups, group_size, Arguments(items, arguments...));
 }
 
+/// The same for a kernel that takes a second number, the first element (`n, first, …`), and does elements first to n - 1.
+template <typename... Ts>
+void launch_range(Queue& queue, Kernel kernel, std::uint32_t items, const Ts&... arguments) {
+    launch_items(queue, kernel, items, std::uint32_t(0), arguments...);
+}
+
 /// Launches `groups` groups of `group_size` work-items.
 template <typename... Ts>
 void launch_groups(Queue& queue, Kernel kernel, std::uint32_t groups, std::uint32_t group_size,

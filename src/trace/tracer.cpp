@@ -48,7 +48,7 @@ constexpr QueryKernels any_kernels{Kernel::trace_brute_any, Kernel::trace_grid_a
 constexpr QueryKernels count_kernels{Kernel::trace_brute_count, Kernel::trace_grid_count, Kernel::trace_grid_count};
 constexpr QueryKernels all_kernels{Kernel::trace_brute_all, Kernel::trace_grid_all, Kernel::trace_grid_all};
 
-/// What a query needs besides its batch and results. Kernels take, in this order: the number of rays and more plain values,
+/// What a query needs besides its batch and results. Kernels take, in this order: the number of rays, the first of them, more plain values,
 /// the grid's header, the scene's parameters, rays, primitives to skip, what is particular to the query, the structure's tables.
 struct Query {
     Queue& queue;
@@ -61,7 +61,7 @@ struct Query {
         return params;
     }
 
-    /// `first` are values that come before all others.
+    /// `first` are the plain values.
     template <typename... First, typename... Particular>
     void launch(const QueryKernels& kernels, const RayBatch& batch, const std::tuple<First...>& first,
                 const Particular&... particular) const {
@@ -72,14 +72,14 @@ struct Query {
             [&](const First&... values) {
                 if (structure.kind() == StructureKind::UniformGrid) {
                     const auto& grid = static_cast<const Grid&>(structure);
-                    launch_items(queue,
+                    launch_range(queue,
                                  options.step == GridStep::Dda ? kernels.grid_dda : kernels.grid_branch_free, n,
                                  values..., grid.header(), scene, batch.rays, batch.skip, particular...,
                                  grid.offsets(), grid.counts(), grid.references(), geometry.triangles,
                                  geometry.instance_starts, geometry.instances);
                 } else {
                     const auto& brute_force = static_cast<const BruteForce&>(structure);
-                    launch_items(queue, kernels.brute_force, n, values..., scene, batch.rays, batch.skip,
+                    launch_range(queue, kernels.brute_force, n, values..., scene, batch.rays, batch.skip,
                                  particular..., brute_force.packets(), geometry.instance_starts,
                                  geometry.instances);
                 }
