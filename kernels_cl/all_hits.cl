@@ -8,10 +8,10 @@
 #include "device/grid/walk_all.h"
 #include "device/trace/brute.h"
 
-SK_KERNEL void trace_brute_count(sk_u32 n, sk_u32 first, sk_u32 most, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
-                                 SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL sk_u32* hit_counts,
-                                 SK_GLOBAL const float* packets, SK_GLOBAL const sk_u32* instance_starts,
-                                 SK_GLOBAL const SetkaInstance* instances) {
+SK_KERNEL void trace_brute_count(sk_u32 n, sk_u32 first, sk_u32 most, sk_trace_params params,
+                                 SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
+                                 SK_GLOBAL sk_u32* hit_counts, SK_GLOBAL const float* packets,
+                                 SK_GLOBAL const sk_u32* instance_starts, SK_GLOBAL const SetkaInstance* instances) {
     const sk_u32 i = first + sk_global_id();
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);

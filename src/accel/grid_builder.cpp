@@ -54,6 +54,15 @@ std::uint64_t peak_bytes_of(Queue& queue, const ::SetkaGridHeader& header, std::
                              pairs + 2 * c * word});
 }
 
+/// The most rows of one launch where a stop can be requested: a fraction of a second of work, even if each is as wide as the
+/// grid, and enough to fill a GPU.
+std::uint64_t rows_a_launch(const Device& device, const ::SetkaGridHeader& header) {
+    const bool is_cpu = device.info().type == DeviceType::Cpu;
+    const std::uint64_t columns = is_cpu ? 1u << 23 : 1u << 26;
+    const std::uint64_t filling = is_cpu ? 1 : 2048 * std::uint64_t(device.info().compute_units);
+    return std::max(columns / *std::ranges::max_element(header.dims), filling);
+}
+
 std::string bytes_text(std::uint64_t bytes) {
     return std::to_string(bytes) + " bytes (" + std::to_string((bytes + (1 << 20) - 1) >> 20) + " MiB)";
 }
@@ -126,9 +135,9 @@ class UniformGridBuilder final : public GridBuilder {
         queue.impl().begin_stage("emit");
         auto cells = queue.make_buffer<std::uint32_t>(pair_count, "pair cells");
         auto references = queue.make_buffer<std::uint32_t>(pair_count, "references");
-        launch_range(queue, Kernel::grid_emit, static_cast<std::uint32_t>(plan.row_count_), header,
-                     plan.geometry_.triangles, plan.row_triangles_, plan.row_starts_, plan.row_offsets_, cells,
-                     references);
+        launch_range(queue, Kernel::grid_emit, static_cast<std::uint32_t>(plan.row_count_),
+                     rows_a_launch(queue.device(), header), header, plan.geometry_.triangles, plan.row_triangles_,
+                     plan.row_starts_, plan.row_offsets_, cells, references);
         plan.row_triangles_ = {};
         plan.row_starts_ = {};
         plan.row_offsets_ = {};
@@ -179,8 +188,8 @@ class UniformGridBuilder final : public GridBuilder {
         const auto counts = queue.make_buffer<std::uint32_t>(r, "cells a row");
         const auto long_rows = queue.make_buffer<std::uint32_t>(1, "columns of long rows");
         queue.impl().fill(*long_rows.memory(), 0, long_rows.size_bytes());
-        launch_range(queue, Kernel::grid_count, r, plan.header_, plan.geometry_.triangles, plan.row_triangles_,
-                     plan.row_starts_, counts, long_rows);
+        launch_range(queue, Kernel::grid_count, r, rows_a_launch(queue.device(), plan.header_), plan.header_,
+                     plan.geometry_.triangles, plan.row_triangles_, plan.row_starts_, counts, long_rows);
         const std::uint64_t pairs = total_of(queue, enqueue_exclusive_scan(queue, counts, r, plan.row_offsets_));
         if (pairs > most_entries) {
             const bool is_all = queue.download(long_rows).front() < SK_MOST_LONG_ROWS;

@@ -42,7 +42,9 @@ Buffer<std::uint64_t> enqueue_exclusive_scan(Queue& queue, const Buffer<std::uin
     if (queue.device().options().primitives == PrimitiveShape::Library) {
         auto total = queue.make_buffer<std::uint64_t>(1, "scan sums");
         const auto scratch = queue.make_buffer<std::byte>(queue.impl().library_scan_bytes(n), "scan scratch");
+        queue.impl().check_stop("scanning");
         queue.impl().library_scan(*counts.memory(), *offsets.memory(), *total.memory(), *scratch.memory(), n);
+        queue.impl().wait_if_stoppable();
         return total;
     }
     const PrimitiveLayout layout = primitive_layout(queue.device(), n);

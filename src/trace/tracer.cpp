@@ -2,6 +2,7 @@
 /// Which kernel traces which structure? The queries, and one place that picks by the structure's kind.
 #include "setka/tracer.hpp"
 
+#include <algorithm>
 #include <string>
 #include <tuple>
 
@@ -36,6 +37,16 @@ void check_result(const char* name, std::size_t size, const RayBatch& batch) {
     check_batch(rays, batch.skip.size());
 }
 
+/// The most rays of one launch where a stop can be requested: a fraction of a second of work, and enough to fill the device.
+std::uint64_t rays_a_launch(const Device& device, const Structure& structure) {
+    const bool is_cpu = device.info().type == DeviceType::Cpu;
+    const std::uint64_t rays = is_cpu ? 1u << 17 : 1u << 20;
+    if (structure.kind() != StructureKind::BruteForce) return rays;
+    const std::uint64_t tests = is_cpu ? 1u << 26 : std::uint64_t(1) << 31;
+    const std::uint64_t filling = device.info().compute_units * (is_cpu ? 64u : 2048u);
+    return std::clamp(tests / std::max(1u, structure.geometry().triangle_count), filling, std::max(rays, filling));
+}
+
 /// Kernels of one query: one for each structure and step.
 struct QueryKernels {
     Kernel brute_force, grid_dda, grid_branch_free;
@@ -48,8 +59,9 @@ constexpr QueryKernels any_kernels{Kernel::trace_brute_any, Kernel::trace_grid_a
 constexpr QueryKernels count_kernels{Kernel::trace_brute_count, Kernel::trace_grid_count, Kernel::trace_grid_count};
 constexpr QueryKernels all_kernels{Kernel::trace_brute_all, Kernel::trace_grid_all, Kernel::trace_grid_all};
 
-/// What a query needs besides its batch and results. Kernels take, in this order: the number of rays, the first of them, more plain values,
-/// the grid's header, the scene's parameters, rays, primitives to skip, what is particular to the query, the structure's tables.
+/// What a query needs besides its batch and results. Kernels take, in this order: the number of rays, the first of them, more
+/// plain values, the grid's header, the scene's parameters, rays, primitives to skip, what is particular to the query, the
+/// structure's tables.
 struct Query {
     Queue& queue;
     const Structure& structure;
@@ -68,18 +80,19 @@ struct Query {
         const auto n = static_cast<std::uint32_t>(batch.rays.size());
         const WorldGeometry& geometry = structure.geometry();
         const sk_trace_params scene = params(batch);
+        const std::uint64_t most = rays_a_launch(queue.device(), structure);
         std::apply(
             [&](const First&... values) {
                 if (structure.kind() == StructureKind::UniformGrid) {
                     const auto& grid = static_cast<const Grid&>(structure);
                     launch_range(queue,
                                  options.step == GridStep::Dda ? kernels.grid_dda : kernels.grid_branch_free, n,
-                                 values..., grid.header(), scene, batch.rays, batch.skip, particular...,
+                                 most, values..., grid.header(), scene, batch.rays, batch.skip, particular...,
                                  grid.offsets(), grid.counts(), grid.references(), geometry.triangles,
                                  geometry.instance_starts, geometry.instances);
                 } else {
                     const auto& brute_force = static_cast<const BruteForce&>(structure);
-                    launch_range(queue, kernels.brute_force, n, values..., scene, batch.rays, batch.skip,
+                    launch_range(queue, kernels.brute_force, n, most, values..., scene, batch.rays, batch.skip,
                                  particular..., brute_force.packets(), geometry.instance_starts,
                                  geometry.instances);
                 }

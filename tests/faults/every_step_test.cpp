@@ -4,169 +4,22 @@
 /// then succeeds on the same queue with the same bytes.
 #include <gmock/gmock.h>
 
-#include <cstring>
-#include <functional>
 #include <map>
 #include <optional>
 
 #include "faults/faulty_queue.hpp"
-#include "setka/setka.hpp"
+#include "faults/work.hpp"
 #include "support/devices.hpp"
-#include "support/handmade.hpp"
 #include "support/shapes.hpp"
 
 namespace {
 
 using faults::Persistence;
 using faults::Step;
+using faults::Work;
+using faults::World;
 using setka::ErrorCategory;
 using setka::Queue;
-
-/// The bytes of a result.
-class Bytes {
-  public:
-    template <typename T>
-    Bytes& add(const std::vector<T>& values) {
-        const auto* data = reinterpret_cast<const char*>(values.data());
-        bytes_.append(data, values.size() * sizeof(T));
-        return *this;
-    }
-    [[nodiscard]] const std::string& get() const { return bytes_; }
-
-  private:
-    std::string bytes_;
-};
-
-/// What the pieces of work share: a scene with mirrors and glass, on the device in every form.
-struct World {
-    setka::Scene scene = support::mirror_and_glass();
-    setka::DeviceScene on_device;
-    setka::Grid grid;
-    setka::BruteForce brute_force;
-    setka::Buffer<setka::Ray> rays;
-    std::vector<setka::Ray> host_rays;
-
-    explicit World(Queue& queue)
-        : on_device(queue, scene),
-          grid(setka::make_grid_builder()->build(queue, on_device)),
-          brute_force(setka::BruteForce::build(queue, on_device)),
-          rays(setka::camera_rays(queue, *scene.camera, 32, 24)),
-          host_rays(queue.download(rays)) {}
-};
-
-struct Work {
-    std::string name;
-    std::function<std::string(Queue&, const World&)> run;
-    /// Work that makes do with less memory: an allocation may fail without an error.
-    enum class OnOutOfMemory { Fails, MayRecover } on_out_of_memory = OnOutOfMemory::Fails;
-};
-
-std::string grid_bytes(Queue& queue, const setka::Grid& grid) {
-    return Bytes()
-        .add(queue.download(grid.offsets()))
-        .add(queue.download(grid.counts()))
-        .add(queue.download(grid.references()))
-        .add(queue.download(grid.geometry().triangles))
-        .get();
-}
-
-Work building(const std::string& name, setka::CellTables tables) {
-    return {name, [tables](Queue& queue, const World& world) {
-                const auto builder = setka::make_grid_builder({.density = 2, .cell_tables = tables});
-                return grid_bytes(queue, builder->build(queue, world.on_device));
-            }};
-}
-
-Work rendering(const std::string& name, setka::View view) {
-    return {name,
-            [view](Queue& queue, const World& world) {
-                setka::Renderer renderer(
-                    {.width = 12, .height = 8, .max_depth = 3, .view = view, .trace = {}, .progress = {}});
-                const auto image = renderer.render(queue, world.on_device, world.grid, *world.scene.camera);
-                return Bytes().add(image.linear).add(image.srgb).get();
-            },
-            Work::OnOutOfMemory::MayRecover};
-}
-
-template <typename Result>
-Work tracing(const std::string& name,
-             void (setka::Tracer::*query)(Queue&, const setka::Structure&, const setka::Buffer<setka::Ray>&,
-                                          const setka::Buffer<Result>&) const) {
-    return {name, [query](Queue& queue, const World& world) {
-                Bytes bytes;
-                for (const setka::Structure* structure :
-                     {static_cast<const setka::Structure*>(&world.grid),
-                      static_cast<const setka::Structure*>(&world.brute_force)}) {
-                    const auto results = queue.make_buffer<Result>(world.rays.size(), "results");
-                    (setka::Tracer().*query)(queue, *structure, world.rays, results);
-                    bytes.add(queue.download(results));
-                }
-                return bytes.get();
-            }};
-}
-
-const std::vector<Work>& all_work() {
-    static const std::vector<Work> all{
-        {"upload",
-         [](Queue& queue, const World& world) {
-             const setka::DeviceScene scene(queue, world.scene);
-             return Bytes()
-                 .add(queue.download(scene.positions()))
-                 .add(queue.download(scene.normals()))
-                 .add(queue.download(scene.instances()))
-                 .get();
-         }},
-        {"plan",
-         [](Queue& queue, const World& world) {
-             const auto plan = setka::make_grid_builder()->plan(queue, world.on_device);
-             return Bytes()
-                 .add(std::vector{plan.header()})
-                 .add(std::vector{plan.pair_count(), plan.row_count(), plan.table_bytes()})
-                 .get();
-         }},
-        building("build_run_boundaries", setka::CellTables::RunBoundaries),
-        building("build_binary_search", setka::CellTables::BinarySearch),
-        {"brute_force",
-         [](Queue& queue, const World& world) {
-             return Bytes()
-                 .add(queue.download(setka::BruteForce::build(queue, world.on_device).packets()))
-                 .get();
-         }},
-        tracing<setka::Hit>("closest_hit", &setka::Tracer::closest_hit),
-        tracing<std::uint32_t>("any_hit", &setka::Tracer::any_hit),
-        tracing<setka::TraceCost>("cost", &setka::Tracer::closest_hit_cost),
-        {"trace_from_host",
-         [](Queue& queue, const World& world) {
-             return Bytes()
-                 .add(setka::Tracer().closest_hit(queue, world.grid, std::span(world.host_rays)))
-                 .add(setka::Tracer().any_hit(queue, world.brute_force, std::span(world.host_rays)))
-                 .get();
-         }},
-        {"camera_rays",
-         [](Queue& queue, const World& world) {
-             return Bytes()
-                 .add(queue.download(setka::camera_rays(queue, *world.scene.camera, 9, 7, 2)))
-                 .get();
-         }},
-        rendering("render_shaded", setka::View::Shaded),
-        rendering("render_normals", setka::View::Normals),
-        rendering("render_depth", setka::View::Depth),
-        rendering("render_tests", setka::View::Tests),
-    };
-    return all;
-}
-
-std::vector<std::string> work_names() {
-    std::vector<std::string> names;
-    for (const Work& work : all_work()) names.push_back(work.name);
-    return names;
-}
-
-const Work& find_work(const std::string& name) {
-    for (const Work& work : all_work())
-        if (work.name == name) return work;
-    throw std::invalid_argument("no work is called " + name);
-}
 
 /// One piece of work on one device, run again and again with another step failing.
 class Trial {
@@ -270,10 +123,10 @@ class EveryStep : public support::DeviceAndTest<std::string> {
         return counts;
     }
 };
-SETKA_ON_EVERY_DEVICE_AND(EveryStep, work_names());
+SETKA_ON_EVERY_DEVICE_AND(EveryStep, faults::work_names());
 
 TEST_P(EveryStep, LeavesTheLibraryUsable) {
-    const auto counts = fail_everything(device(), find_work(other()));
+    const auto counts = fail_everything(device(), faults::find_work(other()));
     EXPECT_GT(counts.at(Step::Allocate) + counts.at(Step::Wrap), 0u) << "nothing was allocated";
     EXPECT_GT(counts.at(Step::Read), 0u) << "nothing was read";
     EXPECT_GT(counts.at(Step::Launch) + counts.at(Step::Write), 0u) << "nothing was done";
@@ -288,7 +141,7 @@ SETKA_ON_EVERY_DEVICE_AND(EveryPrimitive, (std::vector<std::string>{"build_run_b
 TEST_P(EveryPrimitive, LeavesTheLibraryUsable) {
     for (const char* shape : {"Serial_64", "Group_32"}) {
         SCOPED_TRACE(shape);
-        fail_everything(device(support::launch_shape(shape)), find_work(other()));
+        fail_everything(device(support::launch_shape(shape)), faults::find_work(other()));
     }
 }
 
@@ -318,6 +171,10 @@ TEST_P(HostMemory, IsNotUsedAnyMoreWhenTracingThrows) {
     };
     check([&] { (void)setka::Tracer().closest_hit(queue, world.grid, std::span(world.host_rays)); });
     check([&] { (void)setka::Tracer().any_hit(queue, world.grid, std::span(world.host_rays)); });
+    check([&] { (void)setka::Tracer().count_hits(queue, world.grid, std::span(world.host_rays)); });
+    check([&] {
+        (void)setka::Tracer().all_hits(queue, world.grid, std::span(world.host_rays), {}, world.skip);
+    });
     EXPECT_GT(failures, 4u);
 }
 

@@ -27,18 +27,26 @@ const char* to_string(Step step) noexcept {
 }
 
 void FaultyQueue::fail(Step step, std::uint32_t number, Persistence persistence) {
-    fault_ = {step, number, persistence};
+    fault_ = {step, number, persistence, {}};
     has_failed_ = false;
+    launches_ = 0;
+}
+
+void FaultyQueue::before(Step step, std::uint32_t number, std::function<void()> action) {
+    fail(step, number);
+    fault_->action = std::move(action);
 }
 
 bool FaultyQueue::is_due(Step step, std::string_view name) {
     if (!fault_ || fault_->step != step) return false;
     if (fault_->steps_left > 0) --fault_->steps_left;
     if (fault_->steps_left > 0) return false;
-    if (fault_->persistence == Persistence::Once) fault_.reset();
     has_failed_ = true;
     failed_name_ = name;
-    return true;
+    const std::function<void()> action = fault_->action;
+    if (fault_->persistence == Persistence::Once) fault_.reset();
+    if (action) action();
+    return !action;
 }
 
 void FaultyQueue::fail_if_due(Step step, std::string_view name) {
@@ -74,6 +82,7 @@ void FaultyQueue::launch(setka::Kernel kernel, std::uint32_t group_count, std::u
                          const setka::Arguments& arguments) {
     fail_if_due(Step::Launch, to_string(kernel));
     is_idle_ = false;
+    ++launches_;
     real_->launch(kernel, group_count, group_size, arguments);
 }
 
@@ -89,13 +98,11 @@ void FaultyQueue::read(Memory& source, void* target, std::uint64_t size_bytes) {
 }
 
 void FaultyQueue::copy(Memory& source, Memory& target, std::uint64_t size_bytes) {
-    is_idle_ = false;
     real_->copy(source, target, size_bytes);
 }
 
 void FaultyQueue::fill(Memory& target, std::uint32_t pattern, std::uint64_t size_bytes) {
     fail_if_due(Step::Fill, target.name());
-    is_idle_ = false;
     real_->fill(target, pattern, size_bytes);
 }
 
@@ -108,6 +115,7 @@ void FaultyQueue::library_scan(Memory& counts, Memory& offsets, Memory& total, M
                                std::uint32_t n) {
     fail_if_due(Step::Launch, "library scan");
     is_idle_ = false;
+    ++launches_;
     real_->library_scan(counts, offsets, total, scratch, n);
 }
 
@@ -115,6 +123,7 @@ int FaultyQueue::library_sort(const setka::backend::SortBuffers& buffers, std::u
                               std::uint32_t key_bits) {
     fail_if_due(Step::Launch, "library sort");
     is_idle_ = false;
+    ++launches_;
     return real_->library_sort(buffers, n, key_bits);
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,12 +33,17 @@ class FaultyQueue final : public setka::backend::Queue {
     /// The number-th `step` from here on (1 is the next) fails: an allocation as if the device's budget were
     /// used up, by the library's own check; anything else as if the driver had failed.
     void fail(Step step, std::uint32_t number, Persistence persistence = Persistence::Once);
-    /// Nothing fails any more.
+    /// Calls `action` just before the number-th `step` from here on, which then goes on.
+    void before(Step step, std::uint32_t number, std::function<void()> action);
+    /// Nothing fails and nothing is called any more.
     void heal() { fault_.reset(); }
+    /// Whether the step that was to fail, or before which something was to be called, has come.
     [[nodiscard]] bool has_failed() const { return has_failed_; }
     /// The name of the buffer, or of the kernel, whose step failed last.
     [[nodiscard]] const std::string& failed_name() const { return failed_name_; }
-    /// Whether everything that was enqueued has been waited for.
+    /// Kernels that were launched since the last fail() or before().
+    [[nodiscard]] std::uint32_t launches() const { return launches_; }
+    /// Whether every kernel that was launched has been waited for.
     [[nodiscard]] bool is_idle() const { return is_idle_; }
 
     [[nodiscard]] std::shared_ptr<setka::backend::Memory> allocate(std::uint64_t size_bytes,
@@ -72,6 +78,7 @@ class FaultyQueue final : public setka::backend::Queue {
         Step step;
         std::uint32_t steps_left;
         Persistence persistence;
+        std::function<void()> action;  ///< instead of a failure
     };
 
     /// Counts a step; true if it has to fail.
@@ -84,6 +91,7 @@ class FaultyQueue final : public setka::backend::Queue {
     std::optional<Fault> fault_;
     bool has_failed_ = false;
     bool is_idle_ = true;
+    std::uint32_t launches_ = 0;
     std::string failed_name_;
 };
 
