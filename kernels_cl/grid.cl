@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/** Entries of the grid build, one a stage; the bodies are in src/device/grid/build.h. */
+/** Entries of the grid build, one a stage; the bodies are in src/device/grid/build.h. Those with `first` do elements first to n - 1. */
 #include "platform.h"
 
 #include "device/grid/build.h"
@@ -24,17 +24,17 @@ SK_KERNEL void grid_row_list(sk_u32 n, SK_GLOBAL const sk_u32* row_starts, SK_GL
     if (i < n) sk_grid_row_list(i, row_starts, row_triangles);
 }
 
-SK_KERNEL void grid_count(sk_u32 n, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
+SK_KERNEL void grid_count(sk_u32 n, sk_u32 first, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
                           SK_GLOBAL const sk_u32* row_triangles, SK_GLOBAL const sk_u32* row_starts,
-                          SK_GLOBAL sk_u32* counts) {
-    const sk_u32 r = sk_global_id();
-    if (r < n) sk_grid_count(r, grid, triangles, row_triangles, row_starts, counts);
+                          SK_GLOBAL sk_u32* counts, SK_GLOBAL sk_u32* long_rows) {
+    const sk_u32 r = first + sk_global_id();
+    if (r < n) sk_grid_count(r, grid, triangles, row_triangles, row_starts, counts, long_rows);
 }
 
-SK_KERNEL void grid_emit(sk_u32 n, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
+SK_KERNEL void grid_emit(sk_u32 n, sk_u32 first, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
                          SK_GLOBAL const sk_u32* row_triangles, SK_GLOBAL const sk_u32* row_starts,
                          SK_GLOBAL const sk_u32* row_offsets, SK_GLOBAL sk_u32* cells, SK_GLOBAL sk_u32* references) {
-    const sk_u32 r = sk_global_id();
+    const sk_u32 r = first + sk_global_id();
     if (r < n) sk_grid_emit(r, grid, triangles, row_triangles, row_starts, row_offsets, cells, references);
 }
 

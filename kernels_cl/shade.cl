@@ -24,7 +24,7 @@ SK_KERNEL void shade_surface(sk_u32 n, SkBackground background, float offset, SK
             point = sk_surface_point(direction, hit, instances, instance_starts, indices, normals, triangles,
                                      offset);
         points[i] = point;
-        sk_store3(colours + 3u * i, sk_own_colour(point, direction, background, materials));
+        sk_store3(colours + (size_t)i * 3u, sk_own_colour(point, direction, background, materials));
     }
 }
 
@@ -75,7 +75,7 @@ SK_KERNEL void shade_gather(sk_u32 n, SK_GLOBAL const sk_u32* offsets, SK_GLOBAL
 
 SK_KERNEL void shade_normals(sk_u32 n, SK_GLOBAL const SkSurfacePoint* points, SK_GLOBAL float* colours) {
     const sk_u32 i = sk_global_id();
-    if (i < n) sk_store3(colours + 3u * i, sk_normal_colour(points[i]));
+    if (i < n) sk_store3(colours + (size_t)i * 3u, sk_normal_colour(points[i]));
 }
 
 SK_KERNEL void shade_depth(sk_u32 n, sk_u32 samples, SK_GLOBAL const SetkaHit* hits,
@@ -93,13 +93,13 @@ SK_KERNEL void shade_cost(sk_u32 n, sk_u32 samples, sk_u32 tests, SK_GLOBAL cons
 SK_KERNEL void shade_ramp(sk_u32 n, SK_GLOBAL const float* values, float maximum, SK_GLOBAL const float* ramp,
                           sk_u32 knots, SK_GLOBAL float* linear) {
     const sk_u32 i = sk_global_id();
-    if (i < n) sk_store3(linear + 3u * i, sk_ramp_colour(values[i], maximum, ramp, knots));
+    if (i < n) sk_store3(linear + (size_t)i * 3u, sk_ramp_colour(values[i], maximum, ramp, knots));
 }
 
 SK_KERNEL void shade_resolve(sk_u32 n, sk_u32 samples, SK_GLOBAL const float* colours,
                              SK_GLOBAL float* linear) {
     const sk_u32 i = sk_global_id();
-    if (i < n) sk_store3(linear + 3u * i, sk_pixel_colour(i, samples, colours));
+    if (i < n) sk_store3(linear + (size_t)i * 3u, sk_pixel_colour(i, samples, colours));
 }
 
 SK_KERNEL void shade_encode(sk_u32 n, SK_GLOBAL const float* linear, SK_GLOBAL const float* thresholds,

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/** Entries of the tracers, one a structure, query and step; the bodies are in src/device/trace and src/device/grid/walk.h. */
+/** Entries of the tracers, one a structure, query and step; the bodies are in src/device/trace and
+ * src/device/grid/walk.h. Those with `first` do rays first to n - 1. */
 #include "platform.h"
 
 #include "device/grid/walk.h"
@@ -11,11 +12,12 @@ SK_KERNEL void trace_pack(sk_u32 n, sk_u32 triangle_count, SK_GLOBAL const float
     if (i < n) sk_trace_pack(i, triangle_count, triangles, packets);
 }
 
-SK_KERNEL void trace_brute_closest(sk_u32 n, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
-                                   SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL SetkaHit* hits,
-                                   SK_GLOBAL const float* packets, SK_GLOBAL const sk_u32* instance_starts,
+SK_KERNEL void trace_brute_closest(sk_u32 n, sk_u32 first, sk_trace_params params,
+                                   SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
+                                   SK_GLOBAL SetkaHit* hits, SK_GLOBAL const float* packets,
+                                   SK_GLOBAL const sk_u32* instance_starts,
                                    SK_GLOBAL const SetkaInstance* instances) {
-    const sk_u32 i = sk_global_id();
+    const sk_u32 i = first + sk_global_id();
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
         const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
@@ -24,11 +26,11 @@ SK_KERNEL void trace_brute_closest(sk_u32 n, sk_trace_params params, SK_GLOBAL c
     }
 }
 
-SK_KERNEL void trace_brute_any(sk_u32 n, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
+SK_KERNEL void trace_brute_any(sk_u32 n, sk_u32 first, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
                                SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL sk_u32* occluded,
                                SK_GLOBAL const float* packets, SK_GLOBAL const sk_u32* instance_starts,
                                SK_GLOBAL const SetkaInstance* instances) {
-    const sk_u32 i = sk_global_id();
+    const sk_u32 i = first + sk_global_id();
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
         const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
@@ -37,103 +39,109 @@ SK_KERNEL void trace_brute_any(sk_u32 n, sk_trace_params params, SK_GLOBAL const
     }
 }
 
-SK_KERNEL void trace_grid_closest_dda(
-    sk_u32 n, SetkaGridHeader grid, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
-    SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL SetkaHit* hits, SK_GLOBAL const sk_u32* occupancy,
-    SK_GLOBAL const sk_i32* offsets, SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* references,
-    SK_GLOBAL const float* triangles, SK_GLOBAL const sk_u32* instance_starts,
-    SK_GLOBAL const SetkaInstance* instances) {
-    const sk_u32 i = sk_global_id();
+SK_KERNEL void trace_grid_closest_dda(sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
+                                      SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
+                                      SK_GLOBAL SetkaHit* hits, SK_GLOBAL const sk_u32* occupancy,
+                                      SK_GLOBAL const sk_i32* offsets, SK_GLOBAL const sk_u32* counts,
+                                      SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
+                                      SK_GLOBAL const sk_u32* instance_starts,
+                                      SK_GLOBAL const SetkaInstance* instances) {
+    const sk_u32 i = first + sk_global_id();
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
-        const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
         const sk_grid_tables tables =
             sk_make_tables(occupancy, offsets, counts, references, triangles, instance_starts, instances);
+        const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
         const sk_walk walk = sk_walk_grid(grid, params, ray, tables, skipped, 0);
         hits[i] = sk_make_hit(params, ray, instance_starts, walk.best);
     }
 }
 
-SK_KERNEL void trace_grid_closest_free(
-    sk_u32 n, SetkaGridHeader grid, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
-    SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL SetkaHit* hits, SK_GLOBAL const sk_u32* occupancy,
-    SK_GLOBAL const sk_i32* offsets, SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* references,
-    SK_GLOBAL const float* triangles, SK_GLOBAL const sk_u32* instance_starts,
-    SK_GLOBAL const SetkaInstance* instances) {
-    const sk_u32 i = sk_global_id();
+SK_KERNEL void trace_grid_closest_free(sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
+                                       SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
+                                       SK_GLOBAL SetkaHit* hits, SK_GLOBAL const sk_u32* occupancy,
+                                       SK_GLOBAL const sk_i32* offsets, SK_GLOBAL const sk_u32* counts,
+                                       SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
+                                       SK_GLOBAL const sk_u32* instance_starts,
+                                       SK_GLOBAL const SetkaInstance* instances) {
+    const sk_u32 i = first + sk_global_id();
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
-        const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
         const sk_grid_tables tables =
             sk_make_tables(occupancy, offsets, counts, references, triangles, instance_starts, instances);
+        const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
         const sk_walk walk = sk_walk_cells(grid, params, ray, tables, skipped, 0);
         hits[i] = sk_make_hit(params, ray, instance_starts, walk.best);
     }
 }
 
-SK_KERNEL void trace_grid_any_dda(
-    sk_u32 n, SetkaGridHeader grid, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
-    SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL sk_u32* occluded, SK_GLOBAL const sk_u32* occupancy,
-    SK_GLOBAL const sk_i32* offsets, SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* references,
-    SK_GLOBAL const float* triangles, SK_GLOBAL const sk_u32* instance_starts,
-    SK_GLOBAL const SetkaInstance* instances) {
-    const sk_u32 i = sk_global_id();
+SK_KERNEL void trace_grid_any_dda(sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
+                                  SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
+                                  SK_GLOBAL sk_u32* occluded, SK_GLOBAL const sk_u32* occupancy,
+                                  SK_GLOBAL const sk_i32* offsets, SK_GLOBAL const sk_u32* counts,
+                                  SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
+                                  SK_GLOBAL const sk_u32* instance_starts,
+                                  SK_GLOBAL const SetkaInstance* instances) {
+    const sk_u32 i = first + sk_global_id();
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
-        const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
         const sk_grid_tables tables =
             sk_make_tables(occupancy, offsets, counts, references, triangles, instance_starts, instances);
+        const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
         const sk_walk walk = sk_walk_grid(grid, params, ray, tables, skipped, 1);
         occluded[i] = walk.best.triangle != SETKA_NO_HIT ? 1u : 0u;
     }
 }
 
-SK_KERNEL void trace_grid_any_free(
-    sk_u32 n, SetkaGridHeader grid, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
-    SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL sk_u32* occluded, SK_GLOBAL const sk_u32* occupancy,
-    SK_GLOBAL const sk_i32* offsets, SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* references,
-    SK_GLOBAL const float* triangles, SK_GLOBAL const sk_u32* instance_starts,
-    SK_GLOBAL const SetkaInstance* instances) {
-    const sk_u32 i = sk_global_id();
+SK_KERNEL void trace_grid_any_free(sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
+                                   SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
+                                   SK_GLOBAL sk_u32* occluded, SK_GLOBAL const sk_u32* occupancy,
+                                   SK_GLOBAL const sk_i32* offsets, SK_GLOBAL const sk_u32* counts,
+                                   SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
+                                   SK_GLOBAL const sk_u32* instance_starts,
+                                   SK_GLOBAL const SetkaInstance* instances) {
+    const sk_u32 i = first + sk_global_id();
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
-        const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
         const sk_grid_tables tables =
             sk_make_tables(occupancy, offsets, counts, references, triangles, instance_starts, instances);
+        const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
         const sk_walk walk = sk_walk_cells(grid, params, ray, tables, skipped, 1);
         occluded[i] = walk.best.triangle != SETKA_NO_HIT ? 1u : 0u;
     }
 }
 
-SK_KERNEL void trace_grid_cost_dda(
-    sk_u32 n, SetkaGridHeader grid, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
-    SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL SetkaTraceCost* costs, SK_GLOBAL const sk_u32* occupancy,
-    SK_GLOBAL const sk_i32* offsets, SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* references,
-    SK_GLOBAL const float* triangles, SK_GLOBAL const sk_u32* instance_starts,
-    SK_GLOBAL const SetkaInstance* instances) {
-    const sk_u32 i = sk_global_id();
+SK_KERNEL void trace_grid_cost_dda(sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
+                                   SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
+                                   SK_GLOBAL SetkaTraceCost* costs, SK_GLOBAL const sk_u32* occupancy,
+                                   SK_GLOBAL const sk_i32* offsets, SK_GLOBAL const sk_u32* counts,
+                                   SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
+                                   SK_GLOBAL const sk_u32* instance_starts,
+                                   SK_GLOBAL const SetkaInstance* instances) {
+    const sk_u32 i = first + sk_global_id();
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
-        const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
         const sk_grid_tables tables =
             sk_make_tables(occupancy, offsets, counts, references, triangles, instance_starts, instances);
+        const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
         const sk_walk walk = sk_walk_grid(grid, params, ray, tables, skipped, 0);
         costs[i] = walk.cost;
     }
 }
 
-SK_KERNEL void trace_grid_cost_free(
-    sk_u32 n, SetkaGridHeader grid, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
-    SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL SetkaTraceCost* costs, SK_GLOBAL const sk_u32* occupancy,
-    SK_GLOBAL const sk_i32* offsets, SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* references,
-    SK_GLOBAL const float* triangles, SK_GLOBAL const sk_u32* instance_starts,
-    SK_GLOBAL const SetkaInstance* instances) {
-    const sk_u32 i = sk_global_id();
+SK_KERNEL void trace_grid_cost_free(sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
+                                    SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
+                                    SK_GLOBAL SetkaTraceCost* costs, SK_GLOBAL const sk_u32* occupancy,
+                                    SK_GLOBAL const sk_i32* offsets, SK_GLOBAL const sk_u32* counts,
+                                    SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
+                                    SK_GLOBAL const sk_u32* instance_starts,
+                                    SK_GLOBAL const SetkaInstance* instances) {
+    const sk_u32 i = first + sk_global_id();
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
-        const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
         const sk_grid_tables tables =
             sk_make_tables(occupancy, offsets, counts, references, triangles, instance_starts, instances);
+        const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
         const sk_walk walk = sk_walk_cells(grid, params, ray, tables, skipped, 0);
         costs[i] = walk.cost;
     }

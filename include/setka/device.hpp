@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -198,6 +199,14 @@ class Queue {
 
     /// Device time by stage since the last call, in order of first use; waits for what was enqueued.
     [[nodiscard]] std::vector<StageTime> take_timings();
+
+    /// Once a stop is requested of `token`, calls that put work on this queue or a copy of it (buffers, transfers, builds, traces,
+    /// renders) throw Cancelled, at the latest when the launch that runs is done. What they had allocated is given back, and
+    /// the queue is usable again as soon as it has another token; `{}` is one of which no stop can be requested.
+    /// While a stop can be requested, each launch is waited for and long ones are divided, which costs some ten microseconds a
+    /// launch. No result depends on it.
+    void set_stop_token(std::stop_token token);
+    [[nodiscard]] std::stop_token stop_token() const;
 
     [[nodiscard]] const Device& device() const noexcept { return device_; }
 

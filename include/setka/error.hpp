@@ -16,6 +16,7 @@ enum class ErrorCategory {
     OutOfMemory,      ///< a memory budget or the device's memory is exceeded; nothing was allocated
     BuildFailed,      ///< a driver could not compile the kernels; the message holds its log
     DeviceFailed,     ///< a driver call failed; the message names the call and the code
+    Cancelled,        ///< a stop was requested (Queue::set_stop_token); what the call had allocated is given back
     Internal,         ///< setka is wrong; please report it
 };
 

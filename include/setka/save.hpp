@@ -22,8 +22,8 @@ namespace setka {
 // on, whatever its checksums say: no file makes a kernel read beyond a table. What a list should hold is not
 // checked, since only a build knows.
 
-/// Writes a grid. The file appears complete or not at all, and replaces an older one in one step. Waits and
-/// downloads. Throws InvalidArgument if the file cannot be written, with the reason, or if the grid itself
+/// Writes a grid. The file appears complete or not at all, also where it is cancelled, and replaces an older
+/// one in one step. Waits and downloads. Throws InvalidArgument if the file cannot be written, with the reason, or if the grid itself
 /// breaks an invariant.
 void save(Queue& queue, const Grid& grid, const std::filesystem::path& file);
 

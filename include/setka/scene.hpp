@@ -129,7 +129,8 @@ void add_default_lights(Scene& scene, const Camera& camera);
 /// A scene on a device: vertex, index, normal, instance and material tables. The host scene is not needed any more.
 class DeviceScene {
   public:
-    /// Validates and uploads. Throws what Scene::validate throws, InvalidArgument above 2^28 triangles, OutOfMemory.
+    /// Validates and uploads. Throws what Scene::validate throws; InvalidArgument above 2^28 triangles, in all instances or in
+    /// all meshes, 2^28 instances or 2^30 vertices; OutOfMemory.
     DeviceScene(Queue& queue, const Scene& scene);
 
     [[nodiscard]] std::uint32_t triangle_count() const noexcept { return triangle_count_; }

@@ -42,7 +42,9 @@ Buffer<std::uint64_t> enqueue_exclusive_scan(Queue& queue, const Buffer<std::uin
     if (queue.device().options().primitives == PrimitiveShape::Library) {
         auto total = queue.make_buffer<std::uint64_t>(1, "scan sums");
         const auto scratch = queue.make_buffer<std::byte>(queue.impl().library_scan_bytes(n), "scan scratch");
+        queue.impl().check_stop("scanning");
         queue.impl().library_scan(*counts.memory(), *offsets.memory(), *total.memory(), *scratch.memory(), n);
+        queue.impl().wait_if_stoppable();
         return total;
     }
     const PrimitiveLayout layout = primitive_layout(queue.device(), n);
@@ -55,10 +57,11 @@ Buffer<std::uint64_t> enqueue_exclusive_scan(Queue& queue, const Buffer<std::uin
     return sums;
 }
 
+std::uint64_t total_of(Queue& queue, const Buffer<std::uint64_t>& sums) { return queue.download(sums).back(); }
+
 std::uint64_t exclusive_scan(Queue& queue, const Buffer<std::uint32_t>& counts, std::uint32_t n,
                              const Buffer<std::uint32_t>& offsets, const char* what) {
-    const Buffer<std::uint64_t> sums = enqueue_exclusive_scan(queue, counts, n, offsets);
-    const std::uint64_t total = queue.download(sums).back();
+    const std::uint64_t total = total_of(queue, enqueue_exclusive_scan(queue, counts, n, offsets));
     constexpr std::uint64_t limit = std::numeric_limits<std::int32_t>::max();
     if (total > limit)
         throw Error(ErrorCategory::OutOfMemory, "the scene needs " + std::to_string(total) + " " + what +

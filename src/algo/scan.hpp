@@ -16,7 +16,10 @@ namespace setka {
 Buffer<std::uint64_t> enqueue_exclusive_scan(Queue& queue, const Buffer<std::uint32_t>& counts, std::uint32_t n,
                                              const Buffer<std::uint32_t>& offsets);
 
-/// The same, and waits for the total. Throws OutOfMemory if the total exceeds 2^31 - 1; `what` names what is counted.
+/// The total in what enqueue_exclusive_scan() returned; waits for it.
+[[nodiscard]] std::uint64_t total_of(Queue& queue, const Buffer<std::uint64_t>& sums);
+
+/// The same as both, and waits for the total. Throws OutOfMemory if the total exceeds 2^31 - 1; `what` names what is counted.
 std::uint64_t exclusive_scan(Queue& queue, const Buffer<std::uint32_t>& counts, std::uint32_t n,
                              const Buffer<std::uint32_t>& offsets, const char* what = "elements");
 

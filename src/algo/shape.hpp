@@ -22,7 +22,8 @@ struct PrimitiveLayout {
     const DeviceOptions& options = device.options();
     if (options.primitives == PrimitiveShape::Serial) {
         // Long runs keep counters in cache; eight runs a core even out their lengths. Some CPU drivers end a work-item silently
-        // after 65,535 loop turns, all its loops together; a scatter passes over its run and over its counters twice or more.
+        // after 65,535 loop turns, all its loops together; a scatter passes over its run and over its counters twice or more, the
+        // one work-item of the scan's spine over all runs twice: enough for tables of 2 GiB, which such drivers allocate at most.
         constexpr std::uint32_t shortest = 4096, longest = 24576;
         const std::uint32_t wanted = std::min(divide_up(n, shortest), 8 * std::max(1u, device.info().compute_units));
         const std::uint32_t groups = std::max({1u, wanted, divide_up(n, longest)});

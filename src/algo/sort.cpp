@@ -55,10 +55,12 @@ void stable_sort_pairs(Queue& queue, Buffer<std::uint32_t>& keys, Buffer<std::ui
             queue.make_buffer<std::byte>(queue.impl().library_sort_bytes(n, key_bits), "sort scratch");
         const backend::SortBuffers buffers{*keys.memory(), *values.memory(), *other_keys.memory(),
                                            *other_values.memory(), *scratch.memory()};
+        queue.impl().check_stop("sorting");
         if (queue.impl().library_sort(buffers, n, key_bits) == 1) {
             std::swap(keys, other_keys);
             std::swap(values, other_values);
         }
+        queue.impl().wait_if_stoppable();
         return;
     }
     const Passes passes = passes_of(queue.device(), key_bits);

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -69,6 +70,20 @@ class Queue {
     [[nodiscard]] virtual std::uint64_t library_sort_bytes(std::uint32_t n, std::uint32_t key_bits);
     /// Stable sort by the lowest key_bits; returns 0 if the result is in the first pair of buffers, 1 if in the second.
     [[nodiscard]] virtual int library_sort(const SortBuffers& buffers, std::uint32_t n, std::uint32_t key_bits);
+
+    // Cancellation is above the API: whoever enqueues asks before, and waits afterwards if there is anything to wait for.
+
+    void set_stop_token(std::stop_token token) noexcept { stop_token_ = std::move(token); }
+    [[nodiscard]] const std::stop_token& stop_token() const noexcept { return stop_token_; }
+    /// Throws Cancelled if a stop was requested; `next` says what is not done any more.
+    void check_stop(std::string_view next) const;
+    /// Waits for what was enqueued if a stop can be requested, so that no more than one launch lies between request and answer.
+    void wait_if_stoppable() {
+        if (stop_token_.stop_possible()) finish();
+    }
+
+  private:
+    std::stop_token stop_token_;
 };
 
 class Device : public std::enable_shared_from_this<Device> {

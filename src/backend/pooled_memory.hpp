@@ -3,6 +3,7 @@
 /// the budget.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -40,7 +41,7 @@ class PooledMemory : public Memory {
             // Unused allocations of other sizes must not push the total over the budget.
             if (device->in_use_bytes() + pool->cached_bytes() > device->options().memory_budget_bytes)
                 pool->clear();
-            buffer = make_handle(pooled_bytes);
+            buffer = make_or_trim(*device, pooled_bytes, make_handle);
         }
         pooled_bytes_ = pooled_bytes;
         pool_ = std::move(pool);
@@ -48,6 +49,19 @@ class PooledMemory : public Memory {
     }
 
   private:
+    /// A new allocation of the driver. One that has none left gets back what is cached here and is asked once more: others may
+    /// hold the device's memory.
+    template <typename MakeHandle>
+    static Handle make_or_trim(Device& device, std::uint64_t pooled_bytes, MakeHandle make_handle) {
+        try {
+            return make_handle(pooled_bytes);
+        } catch (const Error& error) {
+            if (error.category() != ErrorCategory::OutOfMemory) throw;
+        }
+        device.trim();
+        return make_handle(pooled_bytes);
+    }
+
     std::uint64_t pooled_bytes_ = 0;
     std::shared_ptr<Device> device_;
     std::shared_ptr<Pool<Handle>> pool_;
@@ -60,13 +74,14 @@ template <typename PooledMem, typename Handle, typename MakeHandle>
 std::shared_ptr<Memory> allocate_pooled(const std::shared_ptr<Device>& device,
                                         const std::shared_ptr<Pool<Handle>>& pool, std::uint64_t size_bytes,
                                         std::string_view name, MakeHandle make_handle) {
-    const std::uint64_t pooled_bytes = Pool<Handle>::pooled_size(size_bytes);
     const DeviceInfo& info = device->info();
-    if (pooled_bytes > info.max_allocation_bytes)
+    if (size_bytes > info.max_allocation_bytes)
         throw Error(ErrorCategory::OutOfMemory, "buffer '" + std::string(name) + "' needs " +
                                                     std::to_string(size_bytes) + " bytes; " + info.name +
                                                     " allows " + std::to_string(info.max_allocation_bytes) +
                                                     " in one allocation");
+    const std::uint64_t pooled_bytes =
+        std::min(Pool<Handle>::pooled_size(size_bytes), info.max_allocation_bytes);
     auto memory = std::make_shared<PooledMem>(size_bytes, std::string(name));
     device->reserve(size_bytes, name);
     try {

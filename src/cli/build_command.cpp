@@ -9,6 +9,7 @@
 
 #include "cli/command.hpp"
 #include "cli/grid_statistics.hpp"
+#include "cli/interrupt.hpp"
 #include "cli/text.hpp"
 #include "workload/measure.hpp"
 #include "cli/options.hpp"
@@ -109,7 +110,8 @@ void print_text(const std::string& name, const Grid& grid, const Report& report)
     }
     const Scene scene = options.input.load();
     const Device device = options.device.open();
-    Queue queue = device.make_queue();
+    // Builds to take a median of are timed as the library does them where no stop can be requested.
+    Queue queue = options.repeats == 1 ? make_interruptible_queue(device) : device.make_queue();
     const DeviceScene device_scene(queue, scene);
     const auto builder = make_grid_builder(options.grid);
 

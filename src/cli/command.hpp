@@ -12,6 +12,7 @@ enum ExitCode : int {
     exit_ok = 0,
     exit_check_failed = 1,  ///< the work was done, and what was to be checked does not hold
     exit_bad_input = 2,     ///< usage, files or devices: nothing was done
+    exit_interrupted = 130, ///< Ctrl-C, as shells count it: 128 and the signal's number
 };
 
 /// A subcommand and the work it does once the command line is parsed.

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "cli/command.hpp"
+#include "cli/interrupt.hpp"
 #include "setka/error.hpp"
 #include "setka/version.hpp"
 
@@ -18,9 +19,9 @@ namespace {
 
 using setka::cli::Command;
 
-[[nodiscard]] int report(std::string_view message) {
+[[nodiscard]] int report(std::string_view message, setka::cli::ExitCode code = setka::cli::exit_bad_input) {
     fmt::print(stderr, "setka: {}\n", message);
-    return setka::cli::exit_bad_input;
+    return code;
 }
 
 /// The message as one line; a driver's build log keeps its lines.
@@ -44,7 +45,7 @@ int run(int argc, char** argv) {
     program.set_version_flag("--version", std::string("setka ") + setka::version());
     program.require_subcommand(0, 1);  // none is refused below: CLI11 would say so of a misspelt one too
     program.get_formatter()->column_width(34);
-    program.footer("Exit codes: 0 ok, 1 a check failed, 2 bad usage, input or device.");
+    program.footer("Exit codes: 0 ok, 1 a check failed, 2 bad usage, input or device, 130 interrupted.");
     const std::array commands{
         setka::cli::add_devices_command(program), setka::cli::add_render_command(program),
         setka::cli::add_build_command(program),   setka::cli::add_trace_command(program),
@@ -67,8 +68,11 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     try {
+        setka::cli::listen_for_interrupts();
         return run(argc, argv);
     } catch (const setka::Error& error) {
+        if (error.category() == setka::ErrorCategory::Cancelled)
+            return report("interrupted", setka::cli::exit_interrupted);
         return report(one_line(error));
     } catch (const std::bad_alloc&) {
         return report("out of host memory");

@@ -9,6 +9,7 @@
 #include "cli/command.hpp"
 #include "cli/text.hpp"
 #include "workload/measure.hpp"
+#include "cli/interrupt.hpp"
 #include "cli/options.hpp"
 #include "cli/progress.hpp"
 #include "cli/scene_input.hpp"
@@ -118,7 +119,7 @@ void print_text(const Options& options, const Device& device, const DeviceScene&
     times.load_ms = load_watch.elapsed_ms();
 
     const Device device = options.device.open();
-    Queue queue = device.make_queue();
+    Queue queue = make_interruptible_queue(device);
     progress.update("building", 0);
     const workload::Stopwatch build_watch;
     const DeviceScene device_scene(queue, scene);
@@ -130,6 +131,7 @@ void print_text(const Options& options, const Device& device, const DeviceScene&
     const workload::Stopwatch render_watch;
     const Image image = renderer.render(queue, device_scene, *structure, camera);
     times.render_ms = render_watch.elapsed_ms();
+    end_interruptible_work();
     io::write_image(options.output, image);
     progress.clear();
     if (options.as_json) print_json(options, device, device_scene, *structure, renderer.statistics(), times);

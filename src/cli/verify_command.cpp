@@ -13,6 +13,7 @@
 #include "cli/command.hpp"
 #include "cli/text.hpp"
 #include "workload/measure.hpp"
+#include "cli/interrupt.hpp"
 #include "cli/options.hpp"
 #include "cli/progress.hpp"
 #include "workload/random_rays.hpp"
@@ -155,7 +156,7 @@ void print_text(const Options& options, const Device& device, const Grid& grid, 
 [[nodiscard]] ExitCode run(const Options& options) {
     const Scene scene = options.input.load();
     const Device device = options.device.open();
-    Queue queue = device.make_queue();
+    Queue queue = make_interruptible_queue(device);
     const DeviceScene device_scene(queue, scene);
     const Grid grid = make_grid_builder(options.grid)->build(queue, device_scene);
     const BruteForce brute_force = BruteForce::build(queue, device_scene);

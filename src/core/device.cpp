@@ -117,6 +117,11 @@ void backend::Queue::library_scan(Memory&, Memory&, Memory&, Memory&, std::uint3
 std::uint64_t backend::Queue::library_sort_bytes(std::uint32_t, std::uint32_t) { no_library(); }
 int backend::Queue::library_sort(const SortBuffers&, std::uint32_t, std::uint32_t) { no_library(); }
 
+void backend::Queue::check_stop(std::string_view next) const {
+    if (stop_token_.stop_requested())
+        throw Error(ErrorCategory::Cancelled, "cancelled before " + std::string(next));
+}
+
 void backend::Device::reserve(std::uint64_t size_bytes, std::string_view name) {
     const std::uint64_t budget = options().memory_budget_bytes;
     const std::uint64_t now = in_use_bytes_ += size_bytes;
@@ -137,12 +142,14 @@ std::shared_ptr<backend::Memory> Queue::allocate(std::size_t size, std::size_t e
     if (size > std::numeric_limits<std::size_t>::max() / element_bytes)
         throw Error(ErrorCategory::OutOfMemory, "buffer '" + std::string(name) + "' has " + std::to_string(size) +
                                                     " elements, more bytes than can be counted");
+    impl_->check_stop("allocating '" + std::string(name) + "'");
     return impl_->allocate(size * element_bytes, name);
 }
 
 std::shared_ptr<backend::Memory> Queue::wrap_host(void* data, std::size_t size, std::size_t element_bytes,
                                                   bool read_only, std::string_view name) {
     if (size == 0) return nullptr;
+    impl_->check_stop("wrapping '" + std::string(name) + "'");
     if (auto memory = impl_->wrap_host(data, size * element_bytes, read_only, name)) return memory;
     auto memory = allocate(size, element_bytes, name);
     impl_->write(*memory, data, size * element_bytes);
@@ -150,11 +157,15 @@ std::shared_ptr<backend::Memory> Queue::wrap_host(void* data, std::size_t size, 
 }
 
 void Queue::write(const std::shared_ptr<backend::Memory>& target, const void* source, std::size_t size_bytes) {
-    if (size_bytes != 0) impl_->write(*target, source, size_bytes);
+    if (size_bytes == 0) return;
+    impl_->check_stop("writing '" + target->name() + "'");
+    impl_->write(*target, source, size_bytes);
 }
 
 void Queue::read(const std::shared_ptr<backend::Memory>& source, void* target, std::size_t size_bytes) {
-    if (size_bytes != 0) impl_->read(*source, target, size_bytes);
+    if (size_bytes == 0) return;
+    impl_->check_stop("reading '" + source->name() + "'");
+    impl_->read(*source, target, size_bytes);
 }
 
 void Queue::check_fits(std::size_t count, std::size_t capacity) {
@@ -163,6 +174,8 @@ void Queue::check_fits(std::size_t count, std::size_t capacity) {
                                                         " elements does not fit a buffer of " + std::to_string(capacity));
 }
 
+void Queue::set_stop_token(std::stop_token token) { impl_->set_stop_token(std::move(token)); }
+std::stop_token Queue::stop_token() const { return impl_->stop_token(); }
 void Queue::finish() { impl_->finish(); }
 std::vector<StageTime> Queue::take_timings() { return impl_->take_timings(); }
 

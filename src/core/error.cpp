@@ -11,6 +11,7 @@ const char* to_string(ErrorCategory category) noexcept {
         case ErrorCategory::OutOfMemory: return "out of memory";
         case ErrorCategory::BuildFailed: return "build failed";
         case ErrorCategory::DeviceFailed: return "device failed";
+        case ErrorCategory::Cancelled: return "cancelled";
         case ErrorCategory::Internal: return "internal error";
     }
     return "unknown";

@@ -6,7 +6,10 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
+#include <mutex>
+#include <set>
 #include <system_error>
 
 namespace setka::detail {
@@ -63,6 +66,29 @@ void InputFile::read(void* target, std::size_t size_bytes) {
                              " bytes could be read");
 }
 
+namespace {
+
+/// Temporary files that are being written, for a program that ends in the middle of it.
+struct PendingNames {
+    std::mutex mutex;
+    std::set<fs::path> files;
+};
+
+PendingNames& pending_names() {
+    static PendingNames& names = *new PendingNames;  // never destroyed: other threads may still ask
+    return names;
+}
+
+}  // namespace
+
+void remove_pending_files(void (*end)()) {
+    const std::lock_guard lock(pending_names().mutex);
+    std::error_code ignored;
+    for (const fs::path& file : pending_names().files) fs::remove(file, ignored);
+    end();
+    std::abort();
+}
+
 PendingFile::PendingFile(fs::path target) : target_(std::move(target)) {
     std::error_code error;
     if (target_.filename().empty()) fail_write(target_, "a file name is needed");
@@ -82,10 +108,12 @@ PendingFile::PendingFile(fs::path target) : target_(std::move(target)) {
     for (int attempt = 0; attempt < 1000; ++attempt) {
         temporary_ = target_.parent_path() / ("." + stem + "." + std::to_string(::getpid()) + "-" +
                                               std::to_string(attempt) + extension);
+        const std::lock_guard lock(pending_names().mutex);
         // O_EXCL: never write into a file that someone else made.
         const int descriptor = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (descriptor >= 0) {
             ::close(descriptor);
+            pending_names().files.insert(temporary_);
             return;
         }
         if (errno != EEXIST) fail_write(target_, std::strerror(errno));
@@ -94,14 +122,19 @@ PendingFile::PendingFile(fs::path target) : target_(std::move(target)) {
 }
 
 PendingFile::~PendingFile() {
+    if (committed_) return;
+    const std::lock_guard lock(pending_names().mutex);
     std::error_code error;
-    if (!committed_) fs::remove(temporary_, error);
+    pending_names().files.erase(temporary_);
+    fs::remove(temporary_, error);
 }
 
 void PendingFile::commit() {
+    const std::lock_guard lock(pending_names().mutex);
     std::error_code error;
     fs::rename(temporary_, target_, error);
     if (error) fail_write(target_, error.message());
+    pending_names().files.erase(temporary_);
     committed_ = true;
 }
 

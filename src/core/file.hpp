@@ -64,6 +64,10 @@ class PendingFile {
     bool committed_ = false;
 };
 
+/// Removes every temporary file of this process that is still being written, and then calls `end`, which does not return: for a
+/// program that ends without unwinding. No file is begun or renamed meanwhile.
+[[noreturn]] void remove_pending_files(void (*end)());
+
 /// A binary file written through a PendingFile. Errors (a full disk) surface in finish().
 class PendingStream {
   public:

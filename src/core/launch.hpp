@@ -2,27 +2,48 @@
 /// How does an algorithm put a kernel on a queue? One item per element, or a stated shape.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "backend/device.hpp"
 
 namespace setka {
 
+/// Launches `groups` groups of `group_size` work-items.
+template <typename... Ts>
+void launch_groups(Queue& queue, Kernel kernel, std::uint32_t groups, std::uint32_t group_size,
+                   const Ts&... arguments) {
+    queue.impl().check_stop(to_string(kernel));
+    queue.impl().launch(kernel, groups, group_size, Arguments(arguments...));
+    queue.impl().wait_if_stoppable();
+}
+
+/// Groups of the device's size for one work-item an element.
+[[nodiscard]] inline std::uint32_t group_count(const Queue& queue, std::uint32_t items) {
+    const std::uint32_t group_size = queue.device().options().work_group_size;
+    return items / group_size + (items % group_size != 0);
+}
+
 /// Launches one work-item for each of `items` elements, in groups of the device's size; none if there is no element. The
 /// kernel's first argument is `items` (a u32), so that it can ignore the last group's surplus.
 template <typename... Ts>
 void launch_items(Queue& queue, Kernel kernel, std::uint32_t items, const Ts&... arguments) {
     if (items == 0) return;
-    const std::uint32_t group_size = queue.device().options().work_group_size;
-    const std::uint32_t groups = items / group_size + (items % group_size != 0);
-    queue.impl().launch(kernel, groups, group_size, Arguments(items, arguments...));
+    launch_groups(queue, kernel, group_count(queue, items), queue.device().options().work_group_size, items,
+                  arguments...);
 }
 
-/// Launches `groups` groups of `group_size` work-items.
+/// The same for a kernel that takes a second number, the first element (`n, first, …`), and does elements first to n - 1. Where a
+/// stop can be requested, at most `most` a launch.
 template <typename... Ts>
-void launch_groups(Queue& queue, Kernel kernel, std::uint32_t groups, std::uint32_t group_size,
-                   const Ts&... arguments) {
-    queue.impl().launch(kernel, groups, group_size, Arguments(arguments...));
+void launch_range(Queue& queue, Kernel kernel, std::uint32_t items, std::uint64_t most, const Ts&... arguments) {
+    const std::uint64_t step = queue.impl().stop_token().stop_possible() ? std::max<std::uint64_t>(most, 1) : items;
+    for (std::uint64_t first = 0; first < items; first += step) {
+        const std::uint64_t end = std::min<std::uint64_t>(items, first + step);
+        launch_groups(queue, kernel, group_count(queue, static_cast<std::uint32_t>(end - first)),
+                      queue.device().options().work_group_size, static_cast<std::uint32_t>(end),
+                      static_cast<std::uint32_t>(first), arguments...);
+    }
 }
 
 }  // namespace setka

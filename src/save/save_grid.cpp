@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "accel/grid_violations.hpp"
+#include "backend/device.hpp"
 #include "core/digest.hpp"
 #include "core/file.hpp"
 #include "save/section_file.hpp"
@@ -252,7 +253,11 @@ std::vector<std::byte> serialize(Queue& queue, const Grid& grid) {
 void save(Queue& queue, const Grid& grid, const std::filesystem::path& file) {
     detail::PendingStream stream(file);  // what cannot be written is refused before the work
     const std::vector<std::byte> bytes = serialize(queue, grid);
-    stream.write(bytes.data(), bytes.size());
+    constexpr std::size_t block = std::size_t(64) << 20;
+    for (std::size_t first = 0; first < bytes.size(); first += block) {
+        queue.impl().check_stop("writing to " + detail::in_quotes(file.string(), 1000));
+        stream.write(bytes.data() + first, std::min(block, bytes.size() - first));
+    }
     stream.finish();
 }
 

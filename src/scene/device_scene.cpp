@@ -1,17 +1,24 @@
 // SPDX-License-Identifier: MIT
 /// How does a scene get onto a device? Concatenated tables, with instances that say where their mesh lies in them.
 #include <algorithm>
-#include <string>
 
-#include "setka/error.hpp"
+#include "scene/limits.hpp"
 #include "setka/scene.hpp"
 
 namespace setka {
 
 namespace {
 
-constexpr std::uint64_t most_triangles = 1u << 28;
-constexpr std::uint64_t most_vertices = 1u << 30;
+SceneSize size_of(const Scene& scene) {
+    SceneSize size;
+    for (const Mesh& mesh : scene.meshes) {
+        size.vertices += mesh.positions.size();
+        size.mesh_triangles += mesh.triangles.size();
+    }
+    size.triangles = scene.triangle_count();
+    size.instances = scene.instances.size();
+    return size;
+}
 
 /// Meshes one behind the other.
 struct HostTables {
@@ -25,23 +32,15 @@ void add(std::vector<float>& table, const std::vector<Float3>& values) {
     for (const Float3& v : values) table.insert(table.end(), {v.x, v.y, v.z});
 }
 
-HostTables tables_of(const Scene& scene) {
+HostTables tables_of(const Scene& scene, const SceneSize& size) {
     HostTables tables;
     struct Place {
         std::uint32_t first_index, first_vertex;
     };
     std::vector<Place> places;
     const bool any_normals = std::ranges::any_of(scene.meshes, [](const Mesh& m) { return !m.normals.empty(); });
-    std::uint64_t vertices = 0, triangles = 0;
-    for (const Mesh& mesh : scene.meshes) {
-        vertices += mesh.positions.size();
-        triangles += mesh.triangles.size();
-    }
-    if (vertices > most_vertices)
-        throw Error(ErrorCategory::InvalidArgument, "the scene has " + std::to_string(vertices) + " vertices; up to " +
-                                                        std::to_string(most_vertices) + " are accepted");
-    tables.positions.reserve(3 * vertices);
-    tables.indices.reserve(3 * triangles);
+    tables.positions.reserve(3 * size.vertices);
+    tables.indices.reserve(3 * size.mesh_triangles);
     for (const Mesh& mesh : scene.meshes) {
         places.push_back({static_cast<std::uint32_t>(tables.indices.size() / 3),
                           static_cast<std::uint32_t>(tables.positions.size() / 3)});
@@ -78,11 +77,9 @@ HostTables tables_of(const Scene& scene) {
 
 DeviceScene::DeviceScene(Queue& queue, const Scene& scene) {
     scene.validate();
-    if (scene.triangle_count() > most_triangles)
-        throw Error(ErrorCategory::InvalidArgument, "the scene has " + std::to_string(scene.triangle_count()) +
-                                                        " triangles; up to " + std::to_string(most_triangles) +
-                                                        " are accepted");
-    const HostTables tables = tables_of(scene);
+    const SceneSize size = size_of(scene);
+    check_scene_size(size);
+    const HostTables tables = tables_of(scene, size);
     triangle_count_ = tables.starts.back();
     instance_count_ = static_cast<std::uint32_t>(scene.instances.size());
     common_mask_ = ~0u;

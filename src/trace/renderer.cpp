@@ -51,8 +51,15 @@ class Picture {
     /// another.
     template <typename Work>
     void for_each_batch(const Work& work) const {
+        for_each_batch(batch_rays / samples_, work, options_.progress);
+    }
+
+    /// The same in batches of at most `size` pixels.
+    template <typename Work>
+    void for_each_batch(std::uint64_t size, const Work& work,
+                        const std::function<void(double)>& progress = {}) const {
         const std::uint64_t all = pixel_count();
-        std::uint64_t size = std::clamp<std::uint64_t>(batch_rays / samples_, 1, all);
+        size = std::clamp<std::uint64_t>(size, 1, all);
         for (std::uint64_t first = 0; first < all;) {
             const std::uint64_t count = std::min(size, all - first);
             try {
@@ -63,7 +70,7 @@ class Picture {
                 continue;
             }
             first += count;
-            if (options_.progress) options_.progress(double(first) / double(all));
+            if (progress) progress(double(first) / double(all));
         }
     }
 
@@ -159,16 +166,15 @@ void render_measure(Picture& picture, const Structure& structure, const Tracer& 
     }
     const std::vector<float> knots = view == View::Depth ? make_depth_ramp() : make_heat_ramp();
     const auto ramp = queue.upload(std::span(knots), "colour ramp");
-    constexpr std::size_t batch = batch_rays;
-    for (std::size_t first = 0; first < values.size(); first += batch) {
-        const auto count = static_cast<std::uint32_t>(std::min(batch, values.size() - first));
+    // One value a pixel, whatever the number of samples.
+    picture.for_each_batch(batch_rays, [&](std::uint32_t first, std::uint32_t count) {
         const auto part = queue.upload(std::span(values).subspan(first, count), "pixel values");
         const auto linear = queue.make_buffer<Float3>(count, "pixels");
         queue.impl().begin_stage("view");
         launch_items(queue, Kernel::shade_ramp, count, part, maximum, ramp,
                      static_cast<std::uint32_t>(knots.size() / 3), linear);
-        picture.store(static_cast<std::uint32_t>(first), count, linear);
-    }
+        picture.store(first, count, linear);
+    });
 }
 
 /// A structure built of the scene shares its table; one that was loaded has its own, which must be the same: hits name triangles

@@ -2,6 +2,7 @@
 /// Which kernel traces which structure? The queries, and one place that picks by the structure's kind.
 #include "setka/tracer.hpp"
 
+#include <algorithm>
 #include <string>
 #include <tuple>
 
@@ -11,6 +12,7 @@
 #include "setka/error.hpp"
 #include "setka/grid.hpp"
 #include "trace/hit_memory.hpp"
+#include "trace/host_rays.hpp"
 
 namespace setka {
 
@@ -35,6 +37,16 @@ void check_result(const char* name, std::size_t size, const RayBatch& batch) {
     check_batch(rays, batch.skip.size());
 }
 
+/// The most rays of one launch where a stop can be requested: a fraction of a second of work, and enough to fill the device.
+std::uint64_t rays_a_launch(const Device& device, const Structure& structure) {
+    const bool is_cpu = device.info().type == DeviceType::Cpu;
+    const std::uint64_t rays = is_cpu ? 1u << 17 : 1u << 20;
+    if (structure.kind() != StructureKind::BruteForce) return rays;
+    const std::uint64_t tests = is_cpu ? 1u << 26 : std::uint64_t(1) << 31;
+    const std::uint64_t filling = device.info().compute_units * (is_cpu ? 64u : 2048u);
+    return std::clamp(tests / std::max(1u, structure.geometry().triangle_count), filling, std::max(rays, filling));
+}
+
 /// Kernels of one query: one for each structure and step.
 struct QueryKernels {
     Kernel brute_force, grid_dda, grid_branch_free;
@@ -47,8 +59,9 @@ constexpr QueryKernels any_kernels{Kernel::trace_brute_any, Kernel::trace_grid_a
 constexpr QueryKernels count_kernels{Kernel::trace_brute_count, Kernel::trace_grid_count, Kernel::trace_grid_count};
 constexpr QueryKernels all_kernels{Kernel::trace_brute_all, Kernel::trace_grid_all, Kernel::trace_grid_all};
 
-/// What a query needs besides its batch and results. Kernels take, in this order: the number of rays and more plain values,
-/// the grid's header, the scene's parameters, rays, primitives to skip, what is particular to the query, the structure's tables.
+/// What a query needs besides its batch and results. Kernels take, in this order: the number of rays, the first of them, more
+/// plain values, the grid's header, the scene's parameters, rays, primitives to skip, what is particular to the query, the
+/// structure's tables.
 struct Query {
     Queue& queue;
     const Structure& structure;
@@ -60,25 +73,26 @@ struct Query {
         return params;
     }
 
-    /// `first` are values that come before all others.
+    /// `first` are the plain values.
     template <typename... First, typename... Particular>
     void launch(const QueryKernels& kernels, const RayBatch& batch, const std::tuple<First...>& first,
                 const Particular&... particular) const {
         const auto n = static_cast<std::uint32_t>(batch.rays.size());
         const WorldGeometry& geometry = structure.geometry();
         const sk_trace_params scene = params(batch);
+        const std::uint64_t most = rays_a_launch(queue.device(), structure);
         std::apply(
             [&](const First&... values) {
                 if (structure.kind() == StructureKind::UniformGrid) {
                     const auto& grid = static_cast<const Grid&>(structure);
-                    launch_items(queue,
+                    launch_range(queue,
                                  options.step == GridStep::Dda ? kernels.grid_dda : kernels.grid_branch_free, n,
-                                 values..., grid.header(), scene, batch.rays, batch.skip, particular...,
+                                 most, values..., grid.header(), scene, batch.rays, batch.skip, particular...,
                                  grid.occupancy(), grid.offsets(), grid.counts(), grid.references(),
                                  geometry.triangles, geometry.instance_starts, geometry.instances);
                 } else {
                     const auto& brute_force = static_cast<const BruteForce&>(structure);
-                    launch_items(queue, kernels.brute_force, n, values..., scene, batch.rays, batch.skip,
+                    launch_range(queue, kernels.brute_force, n, most, values..., scene, batch.rays, batch.skip,
                                  particular..., brute_force.packets(), geometry.instance_starts,
                                  geometry.instances);
                 }
@@ -144,47 +158,40 @@ AllHits Tracer::all_hits(Queue& queue, const Structure& structure, const RayBatc
     return result;
 }
 
-namespace {
-
-/// Rays and primitives of the host as a batch that uses their memory in place where it can.
-RayBatch wrap(Queue& queue, std::span<const Ray> rays, std::span<const Primitive> skip) {
-    check_batch(rays.size(), skip.size());
-    return {queue.wrap(rays, "rays"), queue.wrap(skip, "primitives to skip")};
-}
-
-}  // namespace
-
 std::vector<Hit> Tracer::closest_hit(Queue& queue, const Structure& structure, std::span<const Ray> rays,
                                      std::span<const Primitive> skip) const {
-    std::vector<Hit> hits(rays.size());
-    const auto device_hits = queue.wrap(std::span(hits), "hits");
-    closest_hit(queue, structure, wrap(queue, rays, skip), device_hits);
-    queue.download(device_hits, std::span(hits));
-    return hits;
+    check_batch(rays.size(), skip.size());
+    return trace_from_host<Hit>(queue, rays, skip, "hits", [&](const RayBatch& batch, const Buffer<Hit>& hits) {
+        closest_hit(queue, structure, batch, hits);
+    });
 }
 
 std::vector<std::uint32_t> Tracer::any_hit(Queue& queue, const Structure& structure, std::span<const Ray> rays,
                                            std::span<const Primitive> skip) const {
-    std::vector<std::uint32_t> occluded(rays.size());
-    const auto device_occluded = queue.wrap(std::span(occluded), "occluded");
-    any_hit(queue, structure, wrap(queue, rays, skip), device_occluded);
-    queue.download(device_occluded, std::span(occluded));
-    return occluded;
+    check_batch(rays.size(), skip.size());
+    return trace_from_host<std::uint32_t>(queue, rays, skip, "occluded",
+                                          [&](const RayBatch& batch, const Buffer<std::uint32_t>& occluded) {
+                                              any_hit(queue, structure, batch, occluded);
+                                          });
 }
 
 std::vector<std::uint32_t> Tracer::count_hits(Queue& queue, const Structure& structure, std::span<const Ray> rays,
                                               const AllHitsOptions& options, std::span<const Primitive> skip) const {
-    std::vector<std::uint32_t> counts(rays.size());
-    const auto device_counts = queue.wrap(std::span(counts), "hit counts");
-    count_hits(queue, structure, wrap(queue, rays, skip), device_counts, options);
-    queue.download(device_counts, std::span(counts));
-    return counts;
+    check_batch(rays.size(), skip.size());
+    return trace_from_host<std::uint32_t>(queue, rays, skip, "hit counts",
+                                          [&](const RayBatch& batch, const Buffer<std::uint32_t>& counts) {
+                                              count_hits(queue, structure, batch, counts, options);
+                                          });
 }
 
 HitLists Tracer::all_hits(Queue& queue, const Structure& structure, std::span<const Ray> rays,
                           const AllHitsOptions& options, std::span<const Primitive> skip) const {
-    const AllHits all = all_hits(queue, structure, wrap(queue, rays, skip), options);
-    return {queue.download(all.offsets), queue.download(all.hits)};
+    check_batch(rays.size(), skip.size());
+    WaitIfThrown wait(queue);
+    const AllHits all = all_hits(queue, structure, wrap_batch(queue, rays, skip), options);
+    HitLists lists{queue.download(all.offsets), queue.download(all.hits)};
+    wait.done();
+    return lists;
 }
 
 }  // namespace setka

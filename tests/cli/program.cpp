@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -15,6 +16,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <system_error>
 #include <thread>
 
 namespace cli_test {
@@ -28,10 +30,11 @@ void redirect(int descriptor, const std::string& file) {
     if (target < 0 || ::dup2(target, descriptor) < 0) ::_exit(126);
 }
 
-}  // namespace
-
-Outcome run(const std::vector<std::string>& arguments,
-            const std::vector<std::pair<std::string, std::string>>& environment) {
+/// `watch(child, what it has written to stderr)` is called while the program runs.
+template <typename Watch>
+Outcome run_watched(const std::vector<std::string>& arguments,
+                    const std::vector<std::pair<std::string, std::string>>& environment, const Watch& watch,
+                    const fs::path& errors_to = {}) {
     constexpr std::chrono::seconds deadline{120};
     const Folder folder;
     std::vector<std::string> words{SETKA_PROGRAM};
@@ -43,9 +46,10 @@ Outcome run(const std::vector<std::string>& arguments,
     const auto start = std::chrono::steady_clock::now();
     const pid_t child = ::fork();
     if (child == 0) {
+        ::signal(SIGINT, SIG_DFL);  // ignored in what a shell runs in the background
         for (const auto& [name, value] : environment) ::setenv(name.c_str(), value.c_str(), 1);
         redirect(STDOUT_FILENO, folder / "out");
-        redirect(STDERR_FILENO, folder / "err");
+        redirect(STDERR_FILENO, errors_to.empty() ? folder / "err" : errors_to.string());
         ::execv(argv.front(), argv.data());
         ::_exit(127);
     }
@@ -56,6 +60,7 @@ Outcome run(const std::vector<std::string>& arguments,
             ::kill(child, SIGKILL);
             was_killed = true;
         }
+        watch(child, folder / "err");
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     Outcome outcome;
@@ -63,6 +68,45 @@ Outcome run(const std::vector<std::string>& arguments,
     if (WIFEXITED(status)) outcome.exit_code = WEXITSTATUS(status);
     outcome.output = read_file(folder / "out");
     outcome.errors = read_file(folder / "err");
+    return outcome;
+}
+
+}  // namespace
+
+Outcome run(const std::vector<std::string>& arguments,
+            const std::vector<std::pair<std::string, std::string>>& environment) {
+    return run_watched(arguments, environment, [](pid_t, const std::string&) {});
+}
+
+Outcome run_and_interrupt(const std::vector<std::string>& arguments,
+                          const std::function<bool(const std::string&)>& signal_when, int most) {
+    int sent = 0;
+    return run_watched(arguments, {}, [&](pid_t child, const std::string& errors) {
+        if (sent == most || !signal_when(read_file(errors))) return;
+        ::kill(child, SIGINT);
+        ++sent;
+    });
+}
+
+Outcome run_unread_and_interrupt(const std::vector<std::string>& arguments, std::chrono::milliseconds first,
+                                 std::chrono::milliseconds second) {
+    const Folder folder;
+    const std::string pipe = folder / "pipe";
+    const int descriptor = ::mkfifo(pipe.c_str(), 0600) == 0 ? ::open(pipe.c_str(), O_RDWR | O_NONBLOCK) : -1;
+    if (descriptor < 0) throw std::system_error(errno, std::generic_category(), pipe);
+    while (::write(descriptor, "x", 1) == 1) {
+    }
+    const auto start = std::chrono::steady_clock::now();
+    int sent = 0;
+    const Outcome outcome = run_watched(
+        arguments, {},
+        [&](pid_t child, const std::string&) {
+            if (sent == 2 || std::chrono::steady_clock::now() - start < (sent == 0 ? first : second)) return;
+            ::kill(child, SIGINT);
+            ++sent;
+        },
+        pipe);
+    ::close(descriptor);
     return outcome;
 }
 

@@ -3,7 +3,9 @@
 /// errors.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +23,16 @@ struct Outcome {
 /// after 120 s.
 [[nodiscard]] Outcome run(const std::vector<std::string>& arguments,
                           const std::vector<std::pair<std::string, std::string>>& environment = {});
+
+/// The same; each time `signal_when(what it has written to stderr so far)` becomes true it gets a SIGINT, up to `most` times.
+[[nodiscard]] Outcome run_and_interrupt(const std::vector<std::string>& arguments,
+                                        const std::function<bool(const std::string&)>& signal_when, int most = 1);
+
+/// The same with a stderr that nobody reads and that takes nothing more, so that the program waits when it
+/// says something. It gets a SIGINT after `first` and another one after `second`; no errors are returned.
+[[nodiscard]] Outcome run_unread_and_interrupt(const std::vector<std::string>& arguments,
+                                               std::chrono::milliseconds first,
+                                               std::chrono::milliseconds second);
 
 /// True if the program finds a device here.
 [[nodiscard]] bool has_device();

@@ -144,7 +144,9 @@ class CountingDevice final : public Device {
     [[nodiscard]] const DeviceInfo& info() const noexcept override { return info_; }
     [[nodiscard]] const DeviceOptions& options() const noexcept override { return options_; }
     [[nodiscard]] std::shared_ptr<Queue> make_queue() override { return nullptr; }
-    void trim() override {}
+    void trim() override { ++trims; }
+
+    int trims = 0;
 
   private:
     DeviceInfo info_ = some_info();
@@ -155,7 +157,7 @@ using Handle = std::shared_ptr<int>;
 using TestMemory = PooledMemory<Handle>;
 
 struct Allocator {
-    std::shared_ptr<Device> device = std::make_shared<CountingDevice>(4096);
+    std::shared_ptr<CountingDevice> device = std::make_shared<CountingDevice>(4096);
     PoolList<Handle> pools;
     std::shared_ptr<Pool<Handle>> pool = pools.make_pool();
     int made = 0;
@@ -192,6 +194,50 @@ TEST(PooledMemory, CountsNothingThatFailed) {
     EXPECT_THROW((void)allocator.allocate(1 << 21), Error);  // the largest allocation
     EXPECT_EQ(allocator.device->in_use_bytes(), 0u);
     EXPECT_EQ(allocator.made, 0);
+}
+
+TEST(PooledMemory, AsksTheDriverOnceMoreWhenCachesAreGivenBack) {
+    Allocator allocator;
+    int asked = 0, failures = 1;
+    const auto driver = [&](std::uint64_t) -> Handle {
+        if (++asked <= failures) throw Error(ErrorCategory::OutOfMemory, "the driver has none left");
+        return std::make_shared<int>(asked);
+    };
+    const auto allocate = [&] {
+        return allocate_pooled<TestMemory, Handle>(allocator.device, allocator.pool, 1000, "table", driver);
+    };
+    const auto memory = allocate();
+    EXPECT_EQ(asked, 2);
+    EXPECT_EQ(allocator.device->trims, 1);
+    EXPECT_EQ(allocator.device->in_use_bytes(), 1000u);
+    asked = 0;
+    failures = 2;
+    EXPECT_THROW((void)allocate(), Error);
+    EXPECT_EQ(asked, 2);
+    EXPECT_EQ(allocator.device->in_use_bytes(), 1000u) << "what failed is not counted";
+
+    const auto broken = [&](std::uint64_t) -> Handle { throw Error(ErrorCategory::DeviceFailed, "lost"); };
+    EXPECT_THROW((void)(allocate_pooled<TestMemory, Handle>(allocator.device, allocator.pool, 999, "table", broken)),
+                 Error);
+    EXPECT_EQ(allocator.device->trims, 2) << "another failure is no reason to give memory back";
+}
+
+TEST(PooledMemory, GivesTheWholeOfTheLargestAllocation) {
+    const auto device = std::make_shared<CountingDevice>(std::uint64_t{1} << 40);
+    Allocator allocator;
+    const std::uint64_t most = device->info().max_allocation_bytes;
+    std::uint64_t asked = 0;
+    const auto allocate = [&](std::uint64_t size_bytes) {
+        return allocate_pooled<TestMemory, Handle>(device, allocator.pool, size_bytes, "table",
+                                                   [&](std::uint64_t bytes) {
+                                                       asked = bytes;
+                                                       return std::make_shared<int>(1);
+                                                   });
+    };
+    const auto memory = allocate(most - 1);  // rounded up to its pooled size, it fits exactly
+    EXPECT_EQ(asked, most);
+    for (const std::uint64_t bytes : {most + 1, (std::uint64_t{1} << 63) + 1, ~std::uint64_t{0}})
+        EXPECT_THROW((void)allocate(bytes), Error) << bytes;
 }
 
 TEST(PooledMemory, LetsTheCacheNotExceedTheBudget) {

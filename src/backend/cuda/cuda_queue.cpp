@@ -56,14 +56,7 @@ std::shared_ptr<Memory> CudaQueue::allocate(std::uint64_t size_bytes, std::strin
     return allocate_pooled<CudaMemory>(device_, pool_, size_bytes, name, [&](std::uint64_t pooled_bytes) {
         select();
         void* pointer = nullptr;
-        cudaError_t code = cudaMalloc(&pointer, pooled_bytes);
-        if (code == cudaErrorMemoryAllocation) {
-            // Others may hold the card's memory; what is cached here helps first.
-            (void)cudaGetLastError();
-            pool_->clear();
-            code = cudaMalloc(&pointer, pooled_bytes);
-        }
-        check(code, what);
+        check(cudaMalloc(&pointer, pooled_bytes), what);
         return CudaBuffer(pointer);
     });
 }

@@ -8,6 +8,7 @@
 #define SETKA_DEVICE_GRID_BUILD_H
 
 #include "device/grid/cells.h"
+#include "device/grid/limits.h"
 
 /** Stage 1: world vertices of triangle i. first_bad becomes the lowest triangle that is not finite. */
 SK_FUNCTION void sk_grid_transform(sk_u32 i, sk_u32 instance_count, SK_GLOBAL const float* positions,
@@ -44,14 +45,25 @@ SK_FUNCTION void sk_grid_row_list(sk_u32 i, SK_GLOBAL const sk_u32* row_starts, 
     for (sk_u32 r = row_starts[i]; r < end; ++r) row_triangles[r] = i;
 }
 
-/** Stage 4, second half: cells in row r. */
+/**
+ * Stage 4, second half: cells in row r. `long_rows`, 0 at first, adds up the columns of long rows, at most one for each cell, so
+ * that triangles that reach into far too many cells are not counted for hours. When the other work-items see it changes nothing
+ * but which rows of a refused grid are counted.
+ */
 SK_FUNCTION void sk_grid_count(sk_u32 r, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
                                SK_GLOBAL const sk_u32* row_triangles, SK_GLOBAL const sk_u32* row_starts,
-                               SK_GLOBAL sk_u32* counts) {
-    const sk_u32 i = row_triangles[r];
-    const sk_cell_triangle t = sk_load_cell_triangle(grid, triangles + (size_t)i * 9u);
-    const sk_u32 j = sk_first_row(grid, t) + (r - row_starts[i]);
-    counts[r] = sk_visit_row(grid, t, j, 0, 0u, i, (SK_GLOBAL sk_u32*)0, (SK_GLOBAL sk_u32*)0);
+                               SK_GLOBAL sk_u32* counts, SK_GLOBAL sk_u32* long_rows) {
+    sk_u32 count = 0u;
+    if (*(volatile SK_GLOBAL sk_u32*)long_rows < SK_MOST_LONG_ROWS) {
+        const sk_u32 i = row_triangles[r];
+        const sk_cell_triangle t = sk_load_cell_triangle(grid, triangles + (size_t)i * 9u);
+        const sk_u32 j = sk_first_row(grid, t) + (r - row_starts[i]);
+        sk_u32 units;
+        count = sk_visit_row(grid, t, j, 0, 0u, i, (SK_GLOBAL sk_u32*)0, (SK_GLOBAL sk_u32*)0);
+        units = sk_min_u32(count, t.dim_u) / SK_LONG_ROW;
+        if (units != 0u) sk_atomic_add(long_rows, units);
+    }
+    counts[r] = count;
 }
 
 /** Stage 5: the pairs of row r. */

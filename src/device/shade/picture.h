@@ -80,7 +80,7 @@ SK_FUNCTION sk_vec3 sk_pixel_colour(sk_u32 pixel, sk_u32 samples, SK_GLOBAL cons
     sk_vec3 sum = sk_make3(0.0f, 0.0f, 0.0f);
     const float count = (float)samples;
     sk_u32 k;
-    for (k = 0u; k < samples; ++k) sum = sk_add(sum, sk_load3(colours + 3u * (pixel * samples + k)));
+    for (k = 0u; k < samples; ++k) sum = sk_add(sum, sk_load3(colours + (size_t)(pixel * samples + k) * 3u));
     return sk_make3(sk_number(sum.x / count), sk_number(sum.y / count), sk_number(sum.z / count));
 }
 

@@ -136,11 +136,10 @@ SK_FUNCTION void sk_add_light(sk_u32 i, SkLight light, SK_GLOBAL const SetkaRay*
             const float fall_off = light.reference_distance / to_light.length;
             strength = strength * (fall_off * fall_off);
         }
-        colours[3u * i] += ((matte.x + material.specular[0] * highlight) * light.intensity[0]) * strength;
-        colours[3u * i + 1u] +=
-            ((matte.y + material.specular[1] * highlight) * light.intensity[1]) * strength;
-        colours[3u * i + 2u] +=
-            ((matte.z + material.specular[2] * highlight) * light.intensity[2]) * strength;
+        SK_GLOBAL float* colour = colours + (size_t)i * 3u;
+        colour[0] += ((matte.x + material.specular[0] * highlight) * light.intensity[0]) * strength;
+        colour[1] += ((matte.y + material.specular[1] * highlight) * light.intensity[1]) * strength;
+        colour[2] += ((matte.z + material.specular[2] * highlight) * light.intensity[2]) * strength;
     }
 }
 
@@ -221,7 +220,7 @@ SK_FUNCTION void sk_store_child(sk_u32 at, SkSurfacePoint point, float side, sk_
     sk_store3(rays[at].direction, direction);
     rays[at].tmin = 0.0f;
     rays[at].tmax = sk_bits_float(0x7f800000u);
-    sk_store3(weights + 3u * at, weight);
+    sk_store3(weights + (size_t)at * 3u, weight);
     throughputs[at] = throughput * sk_largest_weight(weight);
 }
 
@@ -250,11 +249,11 @@ SK_FUNCTION void sk_emit_children(sk_u32 i, SK_GLOBAL const SetkaRay* rays,
 /** Adds to a ray's colour what its children brought back, in their order. */
 SK_FUNCTION void sk_gather(sk_u32 i, SK_GLOBAL const sk_u32* offsets, SK_GLOBAL const float* weights,
                            SK_GLOBAL const float* child_colours, SK_GLOBAL float* colours) {
-    sk_vec3 sum = sk_load3(colours + 3u * i);
+    sk_vec3 sum = sk_load3(colours + (size_t)i * 3u);
     sk_u32 at;
     for (at = offsets[i]; at < offsets[i + 1u]; ++at)
-        sum = sk_add(sum, sk_mul(sk_load3(weights + 3u * at), sk_load3(child_colours + 3u * at)));
-    sk_store3(colours + 3u * i, sum);
+        sum = sk_add(sum, sk_mul(sk_load3(weights + (size_t)at * 3u), sk_load3(child_colours + (size_t)at * 3u)));
+    sk_store3(colours + (size_t)i * 3u, sum);
 }
 
 #endif

@@ -111,7 +111,7 @@ SK_FUNCTION SkSurfacePoint sk_surface_point(sk_vec3 direction, SetkaHit hit,
                                             SK_GLOBAL const float* triangles, float offset) {
     SkSurfacePoint r;
     SK_GLOBAL const SetkaInstance* instance = instances + hit.instance;
-    SK_GLOBAL const float* corners = triangles + 9u * (instance_starts[hit.instance] + hit.primitive);
+    SK_GLOBAL const float* corners = triangles + (size_t)(instance_starts[hit.instance] + hit.primitive) * 9u;
     const sk_vec3 a = sk_load3(corners), b = sk_load3(corners + 3), c = sk_load3(corners + 6);
     const sk_vec3 ab = sk_sub(b, a), ac = sk_sub(c, a), viewer = sk_negate(direction);
     const float w = (1.0f - hit.u) - hit.v;
@@ -127,11 +127,11 @@ SK_FUNCTION SkSurfacePoint sk_surface_point(sk_vec3 direction, SetkaHit hit,
     normal = geometric;
 
     if (instance->flags & SETKA_INSTANCE_HAS_NORMALS) {
-        SK_GLOBAL const sk_u32* corner = indices + 3u * (instance->first_index + hit.primitive);
+        SK_GLOBAL const sk_u32* corner = indices + (size_t)(instance->first_index + hit.primitive) * 3u;
         const sk_u32 first = instance->first_vertex;
-        sk_vec3 na = sk_vertex_normal(map, sk_load3(normals + 3u * (first + corner[0])), geometric);
-        sk_vec3 nb = sk_vertex_normal(map, sk_load3(normals + 3u * (first + corner[1])), geometric);
-        sk_vec3 nc = sk_vertex_normal(map, sk_load3(normals + 3u * (first + corner[2])), geometric);
+        sk_vec3 na = sk_vertex_normal(map, sk_load3(normals + (size_t)(first + corner[0]) * 3u), geometric);
+        sk_vec3 nb = sk_vertex_normal(map, sk_load3(normals + (size_t)(first + corner[1]) * 3u), geometric);
+        sk_vec3 nc = sk_vertex_normal(map, sk_load3(normals + (size_t)(first + corner[2]) * 3u), geometric);
         const sk_measured mean = sk_measure(sk_blend3(na, w, nb, hit.u, nc, hit.v));
         if (mean.length > 0.0f) {
             /* Files disagree about which way normals point; the side that is seen decides. */
