@@ -49,7 +49,7 @@ typedef struct SetkaPrimitive {
     setka_u32 instance;
 } SetkaPrimitive;
 
-/** What one ray cost: grid cells visited and triangles tested. 8 bytes. */
+/** What one ray cost: places visited, which are grid cells or larger empty cubes of them, and triangles tested. 8 bytes. */
 typedef struct SetkaTraceCost {
     setka_u32 steps;
     setka_u32 tests;

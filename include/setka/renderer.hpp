@@ -15,7 +15,7 @@ enum class View {
     Shaded,
     Normals,  ///< shading normal, (n + 1) / 2
     Depth,    ///< t over the farthest t of the picture, near is bright
-    Steps,    ///< grid cells visited by the primary ray, as a heat map with the legend in RenderStatistics
+    Steps,    ///< grid cells and larger empty cubes visited by the primary ray, as a heat map with the legend in RenderStatistics
     Tests,    ///< triangles tested by the primary ray, likewise
 };
 

@@ -15,7 +15,7 @@ namespace setka {
 
 /// How a ray moves from a grid cell to the next. Both visit cells that give the same hits.
 enum class GridStep {
-    Dda,         ///< the smallest of three parameters (Amanatides & Woo 1987)
+    Dda,         ///< the smallest of three parameters (Amanatides & Woo 1987), past empty space in larger steps
     BranchFree,  ///< signs of three cross products, no division (Maltsev & Mikhaylyuk 2012, section 3)
 };
 
@@ -77,7 +77,8 @@ class Tracer {
     /// occluded[i] = 1 if rays[i] hits anything, else 0.
     void any_hit(Queue& queue, const Structure& structure, const RayBatch& batch,
                  const Buffer<std::uint32_t>& occluded) const;
-    /// costs[i] = cells visited and triangles tested by closest_hit of rays[i].
+    /// costs[i] = places visited and triangles tested by closest_hit of rays[i]: cells one by one with the branch-free step,
+    /// cells and larger empty cubes of them with the DDA step.
     void closest_hit_cost(Queue& queue, const Structure& structure, const RayBatch& batch,
                           const Buffer<TraceCost>& costs) const;
     /// counts[i] = how many triangles rays[i] hits, or max_hits if there are more.

@@ -212,6 +212,10 @@ SK_FUNCTION sk_place sk_leave(sk_place at, sk_u32 shift, float last) {
     sk_place r = at;
     if (last <= w) {
         r.walking = 0;
+    } else if (shift == 0u) {
+        r.x.index = sk_advance(at.x, (sk_u32)through_x);
+        r.y.index = sk_advance(at.y, (sk_u32)through_y);
+        r.z.index = sk_advance(at.z, (sk_u32)(!through_x && !through_y));
     } else {
         r.x.index = through_x ? sk_pass(at.x, shift) : sk_land(at.x, shift, w);
         r.y.index = through_y ? sk_pass(at.y, shift) : sk_land(at.y, shift, w);
