@@ -21,7 +21,7 @@
 #define SK_PARALLEL_INVERSE 0x1p90f
 
 /** The most moves that a walk makes before it looks whether others of its group have a list to test. */
-#define SK_TURNS 8u
+#define SK_TURNS 4u
 
 typedef struct sk_walk {
     sk_best best;
@@ -120,11 +120,13 @@ SK_FUNCTION sk_best sk_test_cell(sk_grid_tables grid, sk_trace_params params, sk
     SK_GLOBAL const sk_u32* list = grid.references + (sk_u32)grid.offsets[cell];
     sk_best r = best;
     sk_u32 k = 0u, candidate = SETKA_NO_HIT;
+    sk_u32 ahead = count != 0u ? list[0] : 0u;
     do {
         sk_u32 next = SETKA_NO_HIT;
         while (k < count && next == SETKA_NO_HIT) {
-            const sk_u32 number = list[k];
+            const sk_u32 number = ahead;
             k += 1u;
+            if (k < count) ahead = list[k]; /* on its way while this triangle is tested */
             if (sk_may_hit(ray, grid.triangles + (size_t)number * 9u, 1u)) {
                 if (candidate == SETKA_NO_HIT)
                     candidate = number;
