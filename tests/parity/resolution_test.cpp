@@ -59,6 +59,14 @@ TEST(GridResolution, CellsCoverTheBounds) {
     }
 }
 
+// The root is the middle between two floats.
+TEST(GridResolution, OfACubeBetweenTwoFloats) {
+    const float lower = -0x1p-17f, upper = 0x1.fffffep-1f;
+    const setka::Bounds bounds{{lower, lower, lower}, {upper, upper, upper}};
+    EXPECT_EQ(setka::grid_resolution(bounds, 16, {.density = 4}).cell_size, 0x1.00008p-2f);
+    EXPECT_EQ(oracle::resolution(bounds, 16, {.density = 4}).cell_size, 0x1.00008p-2f);
+}
+
 TEST(GridResolution, RefusesWhatIsNoBox) {
     constexpr float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
     const setka::Bounds unit{{0, 0, 0}, {1, 1, 1}};
