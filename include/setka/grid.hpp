@@ -35,7 +35,8 @@ struct GridResolution {
 
 /// A = cbrt(V / (density * triangles)), dims = ceil(extents / A) (paper, section 2.2), with defined answers where that has
 /// none: an axis thinner than A becomes one cell thick and leaves the other axes to set A, and A grows until no axis has
-/// more than max_cells_per_axis cells. Only + - * / on doubles: the same on every machine.
+/// more than max_cells_per_axis cells. Only + - * / on doubles: the same on every machine. Throws InvalidArgument for options
+/// out of range, bounds that are not finite, reversed or longer than 1e20, and no triangles.
 [[nodiscard]] GridResolution grid_resolution(const Bounds& bounds, std::uint32_t triangle_count,
                                              const GridOptions& options);
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include "accel/grid_resolution.hpp"
 #include "accel/occupancy.hpp"
 #include "accel/world_geometry.hpp"
 #include "algo/reduce.hpp"
@@ -66,16 +67,6 @@ std::uint64_t rows_a_launch(const Device& device, const ::SetkaGridHeader& heade
 
 std::string bytes_text(std::uint64_t bytes) {
     return std::to_string(bytes) + " bytes (" + std::to_string((bytes + (1 << 20) - 1) >> 20) + " MiB)";
-}
-
-void check_options(const GridOptions& options) {
-    if (!(options.density >= 1e-6f && options.density <= 1e6f))
-        throw Error(ErrorCategory::InvalidArgument, "density is " + std::to_string(options.density) +
-                                                        "; 1e-6 to 1e6 cells a triangle are accepted");
-    if (options.max_cells_per_axis < 1 || options.max_cells_per_axis > 4096)
-        throw Error(ErrorCategory::InvalidArgument, "max_cells_per_axis is " +
-                                                        std::to_string(options.max_cells_per_axis) +
-                                                        "; 1 to 4096 are accepted");
 }
 
 /// Refuses a grid whose cells alone cannot be held, before any triangle is counted.

@@ -309,6 +309,8 @@ class GltfChecker {
     void check_skin(Json& skin, std::size_t index) {
         const std::string what = "skin " + std::to_string(index);
         const Json joints = skin.value("joints", Json::array());
+        // assimp never frees an array of none.
+        if (joints.empty()) fail_read(file_, "malformed glTF: " + what + " has no joints; at least one is needed");
         for (const Json& joint : joints) {
             const auto node = joint.get<std::size_t>();
             (void)element(node, "nodes");

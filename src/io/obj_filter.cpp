@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <vector>
 
 #include "io/file.hpp"
 #include "io/readers.hpp"
@@ -61,7 +62,7 @@ class ObjFilter {
             if (keyword == "f") {
                 add_face(words);
             } else if (std::ranges::find(kept_as_they_are, keyword) != std::end(kept_as_they_are)) {
-                output_.append(keyword).append(" ").append(keyword[0] == 'v' ? number_words(words)
+                output_.append(keyword).append(" ").append(keyword[0] == 'v' ? number_words(words, keyword)
                                                                              : name(words));
                 output_ += '\n';
             }
@@ -75,15 +76,32 @@ class ObjFilter {
         fail_read(file_, "line " + std::to_string(line_number_) + ": " + reason);
     }
 
-    /// The numbers of a vertex, single blanks between them: assimp counts words by its own rules.
-    [[nodiscard]] std::string number_words(TextCursor& words) const {
-        std::string numbers;
+    /// What assimp 5.2 counts as a number.
+    [[nodiscard]] static bool is_counted(std::string_view word) {
+        return (word[0] >= '0' && word[0] <= '9') || word[0] == '-' || word[0] == '+';
+    }
+
+    /// The numbers of a vertex or a normal, single blanks between them. assimp counts words by its own rules,
+    /// leaves out a vertex that has not 3, 4 (with a weight) or 6 (with a colour), and then takes other
+    /// vertices for it.
+    [[nodiscard]] std::string number_words(TextCursor& words, std::string_view keyword) const {
+        std::vector<std::string> numbers;
         for (std::string_view word = words.word(); !word.empty(); word = words.word()) {
             if (const std::optional<float> value = parse_float(word); value && !std::isfinite(*value))
                 fail(in_quotes(word, 40) + " is not finite");
-            numbers.append(numbers.empty() ? "" : " ").append(word);
+            std::string number(word[0] == '.' ? 1 : 0, '0');
+            number.append(word);
+            if (!is_counted(number)) break;
+            numbers.push_back(std::move(number));
         }
-        return numbers;
+        if (numbers.size() < 3)
+            fail("'" + std::string(keyword) + "' is followed by " + std::to_string(numbers.size()) +
+                 " numbers; at least 3 are needed");
+        const bool is_vertex = keyword == "v";
+        numbers.resize(is_vertex && numbers.size() >= 6 ? 6 : is_vertex && numbers.size() == 4 ? 4 : 3);
+        std::string text;
+        for (const std::string& number : numbers) text.append(text.empty() ? "" : " ").append(number);
+        return text;
     }
 
     [[nodiscard]] static std::string name(TextCursor& words) {

@@ -201,6 +201,20 @@ TEST(Obj, ReadsIndicesOfEveryKind) {
     expect_unreadable(folder.write("h.obj", vertices), "no triangle");
 }
 
+// assimp left out such vertices and took others for them, or leaked what it had made when an index was then too large.
+TEST(Obj, CountsVerticesAsTheirLinesDo) {
+    const Folder folder;
+    const Scene scene = load_scene(folder.write(
+        "a.obj", "v .5 -.5 +.5\nv 1 0 0 1 2\nv 0 1 0 1 0 0 1\nv 0 0 1 # 5 5 5\nvn 0 0 1 7\nf 1 2 3\nf 2 3 4\n"));
+    EXPECT_THAT(corners(scene), ElementsAre(Float3{0.5f, -0.5f, 0.5f}, Float3{1, 0, 0}, Float3{0, 1, 0},
+                                            Float3{1, 0, 0}, Float3{0, 1, 0}, Float3{0, 0, 1}));
+    const std::string rest = "v 0 0 0\nv 1 0 0\nf 1 2 3\n";
+    expect_unreadable(folder.write("b.obj", "v 1 0\n" + rest), "line 1: 'v' is followed by 2 numbers");
+    expect_unreadable(folder.write("c.obj", "v 1`0 0\n" + rest), "line 1: 'v' is followed by 2 numbers");
+    expect_unreadable(folder.write("d.obj", "v a 0 0\n" + rest), "line 1: 'v' is followed by 0 numbers");
+    expect_unreadable(folder.write("e.obj", "vn 1\nv 0 1 0\n" + rest), "line 1: 'vn' is followed by 1 numbers");
+}
+
 TEST(Obj, TakesMaterialsAsWhittedMeansThem) {
     const Folder folder;
     (void)folder.write("m.mtl",

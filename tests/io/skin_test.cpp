@@ -118,6 +118,7 @@ TEST(Skin, IsRefusedWhereItContradictsItself) {
     refuses("/skins/0/joints", {2, 9}, "index 9 into 'nodes'");
     refuses("/skins/0/joints", {2, 3, 3}, "the inverseBindMatrices of skin 0");
     refuses("/skins/0/joints", "x", "'joints' must be");
+    refuses("/skins/0/joints", Json::array(), "skin 0 has no joints");
     refuses("/skins/0/inverseBindMatrices", 0, "the inverseBindMatrices of skin 0");
     refuses("/accessors/3/componentType", 5123, "four floats");
     refuses("/accessors/2/componentType", 5126, "reaches");

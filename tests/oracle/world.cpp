@@ -20,6 +20,24 @@ Vec3 transform(const std::array<float, 12>& m, const setka::Float3& p) {
     return result;
 }
 
+/// The double nearest to the root: the C library's is one off at times, and where the root lies in the middle between two floats,
+/// as that of a cube may, it then rounds to the other.
+double nearest_root(double x, int degree) {
+    if (degree == 1) return x;
+    const double root = degree == 3 ? std::cbrt(x) : std::sqrt(x);
+    double best = root;
+    long double least = INFINITY;
+    for (const double candidate : {root, std::nextafter(root, 0.0), std::nextafter(root, double(INFINITY))}) {
+        const long double c = candidate;
+        const long double error = std::fabs((degree == 3 ? c * c * c : c * c) - static_cast<long double>(x));
+        if (error < least) {
+            least = error;
+            best = candidate;
+        }
+    }
+    return best;
+}
+
 }  // namespace
 
 World make_world(const Scene& scene) {
@@ -72,7 +90,7 @@ GridResolution resolution(const Bounds& bounds, std::uint32_t triangle_count, co
             if (shortest < 0 || side[axis] < side[shortest]) shortest = axis;
         }
         const double ratio = product / cells;
-        const double root = left == 3 ? std::cbrt(ratio) : left == 2 ? std::sqrt(ratio) : ratio;
+        const double root = nearest_root(ratio, left);
         // A side of length 0 counts as shorter than any cell, although 0 < 0 does not hold.
         if (side[shortest] > 0 && side[shortest] >= root) {
             size = root;

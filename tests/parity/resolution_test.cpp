@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "oracle/oracle.hpp"
+#include "setka/error.hpp"
 #include "setka/grid.hpp"
 #include "support/random.hpp"
 
@@ -55,6 +57,27 @@ TEST(GridResolution, CellsCoverTheBounds) {
                 << " " << bounds.upper[2] - bounds.lower[2];
         }
     }
+}
+
+// The root is the middle between two floats.
+TEST(GridResolution, OfACubeBetweenTwoFloats) {
+    const float lower = -0x1p-17f, upper = 0x1.fffffep-1f;
+    const setka::Bounds bounds{{lower, lower, lower}, {upper, upper, upper}};
+    EXPECT_EQ(setka::grid_resolution(bounds, 16, {.density = 4}).cell_size, 0x1.00008p-2f);
+    EXPECT_EQ(oracle::resolution(bounds, 16, {.density = 4}).cell_size, 0x1.00008p-2f);
+}
+
+TEST(GridResolution, RefusesWhatIsNoBox) {
+    constexpr float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+    const setka::Bounds unit{{0, 0, 0}, {1, 1, 1}};
+    EXPECT_THROW((void)setka::grid_resolution(unit, 0, {}), setka::Error);
+    EXPECT_THROW((void)setka::grid_resolution({{0, 0, 0}, {1, -1, 1}}, 1, {}), setka::Error);
+    EXPECT_THROW((void)setka::grid_resolution({{0, 0, nan}, {1, 1, 1}}, 1, {}), setka::Error);
+    EXPECT_THROW((void)setka::grid_resolution({{0, 0, 0}, {1, infinity, 1}}, 1, {}), setka::Error);
+    EXPECT_THROW((void)setka::grid_resolution({{-3e38f, 0, 0}, {3e38f, 1, 1}}, 1, {}), setka::Error);
+    EXPECT_THROW((void)setka::grid_resolution({{0, 0, 0}, {1.1e20f, 1, 1}}, 1, {}), setka::Error);
+    EXPECT_THROW((void)setka::grid_resolution(unit, 1, {.density = nan}), setka::Error);
+    EXPECT_THROW((void)setka::grid_resolution(unit, 1, {.max_cells_per_axis = 0}), setka::Error);
 }
 
 TEST(GridResolution, PaperFormula) {

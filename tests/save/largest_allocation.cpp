@@ -20,11 +20,15 @@ void reset_largest_allocation() { largest = 0; }
 
 }  // namespace save_test
 
-void* operator new(std::size_t size) {
+// Both forms: a sanitizer has its own of whichever is missing, whose memory is not for free().
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
     std::size_t before = save_test::largest;
     while (before < size && !save_test::largest.compare_exchange_weak(before, size)) {
     }
-    if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+    return std::malloc(size == 0 ? 1 : size);
+}
+void* operator new(std::size_t size) {
+    if (void* memory = operator new(size, std::nothrow)) return memory;
     throw std::bad_alloc();
 }
 void operator delete(void* memory) noexcept { std::free(memory); }

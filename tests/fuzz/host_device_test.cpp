@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+/// Is the host a device like any other, and may threads share a device? Kernels on the host pass the probe; threads
+/// with a queue each build and trace at once, which the thread sanitizer watches where everything is compiled with it.
+#include "fuzz/host_device.hpp"
+
+#include <gtest/gtest.h>
+
+#include <thread>
+#include <vector>
+
+#include "core/probe.hpp"
+#include "oracle/oracle.hpp"
+#include "setka/grid.hpp"
+#include "setka/tracer.hpp"
+#include "support/compare.hpp"
+#include "support/rays.hpp"
+#include "support/scenes.hpp"
+
+namespace {
+
+TEST(HostDevice, ComputesAsEveryDevice) {
+    setka::Queue queue = fuzz::host_device().make_queue();
+    EXPECT_EQ(setka::run_probe(queue).differences, std::vector<std::string>());
+}
+
+TEST(HostDevice, IsSharedByThreads) {
+    const setka::Device device = fuzz::host_device();
+    const setka::Scene scene = support::ball(100);
+    const oracle::World world = oracle::make_world(scene);
+    const auto rays = support::adversarial_rays(world, 200, 3);
+    const auto right = oracle::closest_hits(world, rays);
+    std::vector<std::vector<setka::Hit>> hits(4);
+    {
+        std::vector<std::jthread> threads;
+        for (auto& own : hits)
+            threads.emplace_back([&] {
+                setka::Queue queue = device.make_queue();
+                for (int round = 0; round < 5; ++round) {
+                    const setka::DeviceScene device_scene(queue, scene);
+                    const setka::Grid grid = setka::make_grid_builder()->build(queue, device_scene);
+                    own = setka::Tracer().closest_hit(queue, grid, rays);
+                }
+            });
+    }
+    for (const auto& own : hits) EXPECT_TRUE(support::same_hits(rays, right, own));
+    EXPECT_EQ(device.memory_in_use_bytes(), 0u);
+}
+
+}  // namespace
