@@ -14,6 +14,11 @@
 #define SK_RESTRICT restrict
 #define SK_BARRIER() barrier(CLK_LOCAL_MEM_FENCE)
 
+/* Given by the host: 8 for CPUs, 1 elsewhere. No result depends on it. */
+#ifndef SK_WIDTH
+#define SK_WIDTH 1u
+#endif
+
 typedef uint sk_u32;
 typedef int sk_i32;
 typedef ulong sk_u64;

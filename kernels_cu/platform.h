@@ -11,6 +11,8 @@
 #define SK_RESTRICT __restrict__
 #define SK_BARRIER() __syncthreads()
 
+#define SK_WIDTH 1u
+
 typedef unsigned int sk_u32;
 typedef int sk_i32;
 typedef unsigned long long sk_u64;

@@ -9,6 +9,7 @@
  *   SK_GLOBAL, SK_LOCAL      before the type of a pointer to global or local memory
  *   SK_LOCAL_STORAGE         before an array in local memory, at the top of a kernel entry only
  *   SK_RESTRICT              on a pointer that nothing else aliases
+ *   SK_WIDTH                 how many equal calculations a work-item does best side by side: 1 where work-items run in step
  *   SK_BARRIER()             all work-items of the group; orders local memory; in uniform control flow only
  *   sk_u32 sk_i32 sk_u64     integers
  *   sk_global_id() sk_local_id() sk_group_id() sk_local_size()   as sk_u32
@@ -23,7 +24,7 @@
 #define SETKA_DEVICE_DIALECT_H
 
 #if !defined(SK_KERNEL) || !defined(SK_FUNCTION) || !defined(SK_GLOBAL) || !defined(SK_LOCAL) || \
-    !defined(SK_LOCAL_STORAGE) || !defined(SK_RESTRICT) || !defined(SK_BARRIER)
+    !defined(SK_LOCAL_STORAGE) || !defined(SK_RESTRICT) || !defined(SK_BARRIER) || !defined(SK_WIDTH)
 #error "include a platform.h before dialect.h"
 #endif
 

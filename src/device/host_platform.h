@@ -26,6 +26,10 @@ static_assert(FLT_EVAL_METHOD == 0, "float expressions must be rounded to float 
 #define SK_RESTRICT __restrict
 #define SK_BARRIER() ((void)0)
 
+#ifndef SK_WIDTH
+#define SK_WIDTH 1u
+#endif
+
 typedef std::uint32_t sk_u32;
 typedef std::int32_t sk_i32;
 typedef std::uint64_t sk_u64;

@@ -9,8 +9,8 @@
 #define SETKA_DEVICE_GRID_WALK_H
 
 #include "device/grid/cells.h"
+#include "device/grid/cell_list.h"
 #include "device/grid/occupancy.h"
-#include "device/trace/triangle.h"
 
 /**
  * The distance in cells to a face that is never reached: far beyond a ray's way through the scene's box, which is a few times
@@ -81,67 +81,6 @@ SK_FUNCTION sk_span sk_limit(sk_working_ray ray) {
     r.w0 = start > ray.w0 ? start : ray.w0;
     r.w1 = end < ray.w1 ? end : ray.w1;
     r.meets = ray.valid && r.w0 <= r.w1;
-    return r;
-}
-
-/** The tables of a grid and what its walks need of the scene. */
-typedef struct sk_grid_tables {
-    SK_GLOBAL const sk_u32* occupancy;
-    SK_GLOBAL const sk_i32* offsets;
-    SK_GLOBAL const sk_u32* counts;
-    SK_GLOBAL const sk_u32* references;
-    SK_GLOBAL const float* triangles;
-    SK_GLOBAL const sk_u32* instance_starts;
-    SK_GLOBAL const SetkaInstance* instances;
-} sk_grid_tables;
-
-SK_FUNCTION sk_grid_tables sk_make_tables(SK_GLOBAL const sk_u32* occupancy, SK_GLOBAL const sk_i32* offsets,
-                                          SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* references,
-                                          SK_GLOBAL const float* triangles,
-                                          SK_GLOBAL const sk_u32* instance_starts,
-                                          SK_GLOBAL const SetkaInstance* instances) {
-    sk_grid_tables r;
-    r.occupancy = occupancy;
-    r.offsets = offsets;
-    r.counts = counts;
-    r.references = references;
-    r.triangles = triangles;
-    r.instance_starts = instance_starts;
-    r.instances = instances;
-    return r;
-}
-
-/**
- * The best of `best` and the hits in a cell's list, past the triangle `skip`. The accurate test is long and few triangles come to
- * it, so it waits until the list is through or the next candidate is there: work-items that run in step do it together.
- */
-SK_FUNCTION sk_best sk_test_cell(sk_grid_tables grid, sk_trace_params params, sk_working_ray ray, sk_u32 cell,
-                                 sk_u32 count, sk_u32 skip, sk_best best) {
-    SK_GLOBAL const sk_u32* list = grid.references + (sk_u32)grid.offsets[cell];
-    sk_best r = best;
-    sk_u32 k = 0u, candidate = SETKA_NO_HIT;
-    sk_u32 ahead = count != 0u ? list[0] : 0u;
-    do {
-        sk_u32 next = SETKA_NO_HIT;
-        while (k < count && next == SETKA_NO_HIT) {
-            const sk_u32 number = ahead;
-            k += 1u;
-            if (k < count) ahead = list[k]; /* on its way while this triangle is tested */
-            if (sk_may_hit(ray, grid.triangles + (size_t)number * 9u, 1u)) {
-                if (candidate == SETKA_NO_HIT)
-                    candidate = number;
-                else
-                    next = number;
-            }
-        }
-        if (candidate != SETKA_NO_HIT) {
-            const sk_best hit = sk_test_triangle(ray, grid.triangles + (size_t)candidate * 9u, 1u, candidate, r);
-            if (hit.triangle != r.triangle && candidate != skip &&
-                sk_is_visible(params, grid.instance_starts, grid.instances, candidate))
-                r = hit;
-        }
-        candidate = next;
-    } while (candidate != SETKA_NO_HIT);
     return r;
 }
 

@@ -35,9 +35,7 @@ SK_FUNCTION sk_u32 sk_packet_candidates(sk_working_ray ray, SK_GLOBAL const floa
         const float u = x2 * y1 - y2 * x1;
         const float v = x0 * y2 - y0 * x2;
         const float w = x1 * y0 - y1 * x0;
-        const sk_u32 below = (sk_u32)(u < 0.0f) | (sk_u32)(v < 0.0f) | (sk_u32)(w < 0.0f);
-        const sk_u32 above = (sk_u32)(u > 0.0f) | (sk_u32)(v > 0.0f) | (sk_u32)(w > 0.0f);
-        any |= (below & above) ^ 1u;
+        any |= sk_mixed_signs_bit(u, v, w) ^ 1u;
     }
     return any;
 }

@@ -60,6 +60,13 @@ SK_FUNCTION int sk_mixed_signs(float u, float v, float w) {
     return (u < 0.0f || v < 0.0f || w < 0.0f) && (u > 0.0f || v > 0.0f || w > 0.0f);
 }
 
+/** The same as 1 or 0, without a branch, for loops over triangles side by side. */
+SK_FUNCTION sk_u32 sk_mixed_signs_bit(float u, float v, float w) {
+    const sk_u32 below = (sk_u32)(u < 0.0f) | (sk_u32)(v < 0.0f) | (sk_u32)(w < 0.0f);
+    const sk_u32 above = (sk_u32)(u > 0.0f) | (sk_u32)(v > 0.0f) | (sk_u32)(w > 0.0f);
+    return below & above;
+}
+
 /**
  * The side of the edge from a to b on which the ray passes, -1 or 1; `edge` has the exact sign of its edge function. A ray that meets
  * the edge's line is treated as if it were moved by an infinitely small step along x and one infinitely smaller along y

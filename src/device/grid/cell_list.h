@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * What does a ray hit of a cell's list? The plain test for all triangles of it, then the accurate one for the few that pass, in two
+ * orders: one triangle after the other where work-items run in step, SK_WIDTH side by side where a work-item has vector
+ * registers of its own. Each triangle sees the same operations, so the hits are the same.
+ */
+#ifndef SETKA_DEVICE_GRID_CELL_LIST_H
+#define SETKA_DEVICE_GRID_CELL_LIST_H
+
+#include "device/trace/triangle.h"
+
+/** The tables of a grid and what its walks need of the scene. */
+typedef struct sk_grid_tables {
+    SK_GLOBAL const sk_u32* occupancy;
+    SK_GLOBAL const sk_i32* offsets;
+    SK_GLOBAL const sk_u32* counts;
+    SK_GLOBAL const sk_u32* references;
+    SK_GLOBAL const float* triangles;
+    SK_GLOBAL const sk_u32* instance_starts;
+    SK_GLOBAL const SetkaInstance* instances;
+} sk_grid_tables;
+
+SK_FUNCTION sk_grid_tables sk_make_tables(SK_GLOBAL const sk_u32* occupancy, SK_GLOBAL const sk_i32* offsets,
+                                          SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* references,
+                                          SK_GLOBAL const float* triangles,
+                                          SK_GLOBAL const sk_u32* instance_starts,
+                                          SK_GLOBAL const SetkaInstance* instances) {
+    sk_grid_tables r;
+    r.occupancy = occupancy;
+    r.offsets = offsets;
+    r.counts = counts;
+    r.references = references;
+    r.triangles = triangles;
+    r.instance_starts = instance_starts;
+    r.instances = instances;
+    return r;
+}
+
+/** The best of `best` and the hit of a triangle that may be hit, unless it is `skip` or hidden. */
+SK_FUNCTION sk_best sk_test_candidate(sk_grid_tables grid, sk_trace_params params, sk_working_ray ray, sk_u32 number,
+                                      sk_u32 skip, sk_best best) {
+    const sk_best hit = sk_test_triangle(ray, grid.triangles + (size_t)number * 9u, 1u, number, best);
+    const int counts = hit.triangle != best.triangle && number != skip &&
+                       sk_is_visible(params, grid.instance_starts, grid.instances, number);
+    return counts ? hit : best;
+}
+
+#if SK_WIDTH > 1
+
+/** Bit k is set if the ray may hit triangle list[k], k < count and k < SK_WIDTH. */
+SK_FUNCTION sk_u32 sk_candidates(sk_working_ray ray, SK_GLOBAL const float* triangles, SK_GLOBAL const sk_u32* list,
+                                 sk_u32 count) {
+    float vertices[9][SK_WIDTH]; /* components in the ray's order, triangles side by side */
+    sk_u32 bits[SK_WIDTH], r = 0u;
+    for (sk_u32 k = 0u; k < SK_WIDTH; ++k) {
+        SK_GLOBAL const float* triangle = triangles + (size_t)list[k < count ? k : 0u] * 9u;
+        for (sk_u32 v = 0u; v < 3u; ++v) {
+            vertices[3u * v][k] = triangle[3u * v + ray.kx];
+            vertices[3u * v + 1u][k] = triangle[3u * v + ray.ky];
+            vertices[3u * v + 2u][k] = triangle[3u * v + ray.kz];
+        }
+    }
+    for (sk_u32 k = 0u; k < SK_WIDTH; ++k) {
+        const float a0 = vertices[2][k] - ray.oz, a1 = vertices[5][k] - ray.oz, a2 = vertices[8][k] - ray.oz;
+        const float x0 = (vertices[0][k] - ray.ox) - ray.sx * a0, y0 = (vertices[1][k] - ray.oy) - ray.sy * a0;
+        const float x1 = (vertices[3][k] - ray.ox) - ray.sx * a1, y1 = (vertices[4][k] - ray.oy) - ray.sy * a1;
+        const float x2 = (vertices[6][k] - ray.ox) - ray.sx * a2, y2 = (vertices[7][k] - ray.oy) - ray.sy * a2;
+        bits[k] = (sk_mixed_signs_bit(x2 * y1 - y2 * x1, x0 * y2 - y0 * x2, x1 * y0 - y1 * x0) ^ 1u) << k;
+    }
+    for (sk_u32 k = 0u; k < SK_WIDTH; ++k) r |= bits[k];
+    return count < SK_WIDTH ? r & ((1u << count) - 1u) : r;
+}
+
+/** The best of `best` and the hits in the list of `cell`, past the triangle `skip`. */
+SK_FUNCTION sk_best sk_test_cell(sk_grid_tables grid, sk_trace_params params, sk_working_ray ray, sk_u32 cell,
+                                 sk_u32 count, sk_u32 skip, sk_best best) {
+    SK_GLOBAL const sk_u32* list = grid.references + (sk_u32)grid.offsets[cell];
+    sk_best r = best;
+    for (sk_u32 first = 0u; first < count; first += SK_WIDTH) {
+        sk_u32 candidates = sk_candidates(ray, grid.triangles, list + first, count - first);
+        for (sk_u32 k = first; candidates != 0u; ++k, candidates >>= 1)
+            if ((candidates & 1u) != 0u) r = sk_test_candidate(grid, params, ray, list[k], skip, r);
+    }
+    return r;
+}
+
+#else
+
+/**
+ * The same. The accurate test is long and few triangles come to it, so it waits until the list is through or the next candidate
+ * is there: work-items that run in step do it together.
+ */
+SK_FUNCTION sk_best sk_test_cell(sk_grid_tables grid, sk_trace_params params, sk_working_ray ray, sk_u32 cell,
+                                 sk_u32 count, sk_u32 skip, sk_best best) {
+    SK_GLOBAL const sk_u32* list = grid.references + (sk_u32)grid.offsets[cell];
+    sk_best r = best;
+    sk_u32 k = 0u, candidate = SETKA_NO_HIT;
+    sk_u32 ahead = count != 0u ? list[0] : 0u;
+    do {
+        sk_u32 next = SETKA_NO_HIT;
+        while (k < count && next == SETKA_NO_HIT) {
+            const sk_u32 number = ahead;
+            k += 1u;
+            if (k < count) ahead = list[k]; /* on its way while this triangle is tested */
+            if (sk_may_hit(ray, grid.triangles + (size_t)number * 9u, 1u)) {
+                if (candidate == SETKA_NO_HIT)
+                    candidate = number;
+                else
+                    next = number;
+            }
+        }
+        if (candidate != SETKA_NO_HIT) r = sk_test_candidate(grid, params, ray, candidate, skip, r);
+        candidate = next;
+    } while (candidate != SETKA_NO_HIT);
+    return r;
+}
+
+#endif
+
+#endif
