@@ -46,16 +46,20 @@ class WalkedTables {
     std::vector<sk_u32> occupancy_;
 };
 
-/// Walks every ray through the tables with the kernels' own body, on the host: under a sanitizer, a read
-/// outside shows.
-void walk(const Model& model, std::span<const setka::Ray> rays) {
+sk_trace_params params_of(const Model& model, std::uint32_t mask) {
     setka::WorldGeometry geometry;
     geometry.bounds = model.bounds;
     geometry.triangle_count = model.header.triangle_count;
     geometry.instance_count = model.header.instance_count;
+    return setka::trace_params(geometry, mask);
+}
+
+/// Walks every ray through the tables with the kernels' own body, on the host: under a sanitizer, a read
+/// outside shows.
+void walk(const Model& model, std::span<const setka::Ray> rays) {
     const WalkedTables tables(model);
     for (const std::uint32_t mask : {0x7fffffffu, 4u}) {
-        const sk_trace_params params = setka::trace_params(geometry, mask);  // looks at every instance
+        const sk_trace_params params = params_of(model, mask);  // looks at every instance
         for (const setka::Ray& ray : rays)
             for (const auto step : {setka::GridStep::Dda, setka::GridStep::BranchFree}) {
                 const sk_working_ray working = sk_prepare_ray(params, ray);
@@ -71,12 +75,8 @@ void walk(const Model& model, std::span<const setka::Ray> rays) {
 
 /// The same for the walk that finds all hits, which counts them and then writes as many.
 void walk_all(const Model& model, std::span<const setka::Ray> rays) {
-    setka::WorldGeometry geometry;
-    geometry.bounds = model.bounds;
-    geometry.triangle_count = model.header.triangle_count;
-    geometry.instance_count = model.header.instance_count;
     const WalkedTables tables(model);
-    const sk_trace_params params = setka::trace_params(geometry, 0x7fffffffu);
+    const sk_trace_params params = params_of(model, 0x7fffffffu);
     const auto find = [&](const sk_working_ray& ray, SetkaHit* hits, std::uint32_t most, const int write) {
         return sk_walk_grid_all(model.header, params, ray, tables.get(), SETKA_NO_HIT, hits, most, write);
     };

@@ -36,17 +36,24 @@ SK_FUNCTION sk_dims sk_block_dims(sk_dims cells) {
 /** Where the words of the second level begin. */
 SK_FUNCTION sk_u32 sk_coarse_start(sk_dims blocks) { return 2u * blocks.x * blocks.y * blocks.z; }
 
+/** The place that bit `bit` of word w stands for, among the children of `blocks` blocks; it may be past the last child. */
+SK_FUNCTION sk_dims sk_child_of_bit(sk_dims blocks, sk_u32 w, sk_u32 bit) {
+    const sk_u32 block = w / 2u;
+    sk_dims r;
+    r.x = block % blocks.x * 4u + bit % 4u;
+    r.y = block / blocks.x % blocks.y * 4u + bit / 4u % 4u;
+    r.z = block / blocks.x / blocks.y * 4u + (w & 1u) * 2u + bit / 16u;
+    return r;
+}
+
 /** Word w of the first level, from the cells' offsets. */
 SK_FUNCTION void sk_occupancy_fine(sk_u32 w, SetkaGridHeader grid, SK_GLOBAL const sk_i32* offsets,
                                    SK_GLOBAL sk_u32* occupancy) {
     const sk_dims cells = sk_cell_dims(grid), blocks = sk_block_dims(cells);
-    const sk_u32 block = w / 2u;
-    const sk_u32 x0 = block % blocks.x * 4u, y0 = block / blocks.x % blocks.y * 4u;
-    const sk_u32 z0 = block / blocks.x / blocks.y * 4u + (w & 1u) * 2u;
     sk_u32 word = 0u;
     for (sk_u32 bit = 0u; bit < 32u; ++bit) {
-        const sk_u32 x = x0 + bit % 4u, y = y0 + bit / 4u % 4u, z = z0 + bit / 16u;
-        if (x < cells.x && y < cells.y && z < cells.z && offsets[(z * cells.y + y) * cells.x + x] >= 0)
+        const sk_dims at = sk_child_of_bit(blocks, w, bit);
+        if (at.x < cells.x && at.y < cells.y && at.z < cells.z && offsets[(at.z * cells.y + at.y) * cells.x + at.x] >= 0)
             word |= 1u << bit;
     }
     occupancy[w] = word;
@@ -55,14 +62,11 @@ SK_FUNCTION void sk_occupancy_fine(sk_u32 w, SetkaGridHeader grid, SK_GLOBAL con
 /** Word w of the second level, from the first. */
 SK_FUNCTION void sk_occupancy_coarse(sk_u32 w, SetkaGridHeader grid, SK_GLOBAL sk_u32* occupancy) {
     const sk_dims cells = sk_block_dims(sk_cell_dims(grid)), blocks = sk_block_dims(cells);
-    const sk_u32 block = w / 2u;
-    const sk_u32 x0 = block % blocks.x * 4u, y0 = block / blocks.x % blocks.y * 4u;
-    const sk_u32 z0 = block / blocks.x / blocks.y * 4u + (w & 1u) * 2u;
     sk_u32 word = 0u;
     for (sk_u32 bit = 0u; bit < 32u; ++bit) {
-        const sk_u32 x = x0 + bit % 4u, y = y0 + bit / 4u % 4u, z = z0 + bit / 16u;
-        if (x < cells.x && y < cells.y && z < cells.z) {
-            SK_GLOBAL const sk_u32* fine = occupancy + (size_t)((z * cells.y + y) * cells.x + x) * 2u;
+        const sk_dims at = sk_child_of_bit(blocks, w, bit);
+        if (at.x < cells.x && at.y < cells.y && at.z < cells.z) {
+            SK_GLOBAL const sk_u32* fine = occupancy + (size_t)((at.z * cells.y + at.y) * cells.x + at.x) * 2u;
             if ((fine[0] | fine[1]) != 0u) word |= 1u << bit;
         }
     }
