@@ -12,6 +12,7 @@
 #define SK_LOCAL __local
 #define SK_LOCAL_STORAGE __local
 #define SK_RESTRICT restrict
+#define SK_ALIGNED(bytes) __attribute__((aligned(bytes)))
 #define SK_BARRIER() barrier(CLK_LOCAL_MEM_FENCE)
 
 /* Given by the host: 8 for CPUs, 1 elsewhere. No result depends on it. */
@@ -31,6 +32,7 @@ typedef ulong sk_u64;
 #define sk_bits_float(u) as_float(u)
 #define sk_sqrt(f) sqrt(f)
 #define sk_floor(f) floor(f)
+#define sk_popcount(u) popcount(u)
 #define sk_atomic_min(p, v) atomic_min(p, v)
 #define sk_atomic_add(p, v) atomic_add(p, v)
 

@@ -41,8 +41,8 @@ SK_KERNEL void trace_brute_any(sk_u32 n, sk_u32 first, sk_trace_params params, S
 
 SK_KERNEL void trace_grid_closest_dda(sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
                                       SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
-                                      SK_GLOBAL SetkaHit* hits, SK_GLOBAL const sk_u32* occupancy,
-                                      SK_GLOBAL const sk_i32* offsets, SK_GLOBAL const sk_u32* counts,
+                                      SK_GLOBAL SetkaHit* hits, SK_GLOBAL const sk_block* blocks, SK_GLOBAL const sk_u32* groups,
+                                  SK_GLOBAL const sk_cell_list* cells,
                                       SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
                                       SK_GLOBAL const sk_u32* instance_starts,
                                       SK_GLOBAL const SetkaInstance* instances) {
@@ -50,7 +50,7 @@ SK_KERNEL void trace_grid_closest_dda(sk_u32 n, sk_u32 first, SetkaGridHeader gr
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
         const sk_grid_tables tables =
-            sk_make_tables(occupancy, offsets, counts, references, triangles, instance_starts, instances);
+            sk_make_tables(blocks, groups, cells, references, triangles, instance_starts, instances);
         const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
         const sk_walk walk = sk_walk_grid(grid, params, ray, tables, skipped, 0);
         hits[i] = sk_make_hit(params, ray, instance_starts, walk.best);
@@ -59,8 +59,8 @@ SK_KERNEL void trace_grid_closest_dda(sk_u32 n, sk_u32 first, SetkaGridHeader gr
 
 SK_KERNEL void trace_grid_closest_free(sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
                                        SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
-                                       SK_GLOBAL SetkaHit* hits, SK_GLOBAL const sk_u32* occupancy,
-                                       SK_GLOBAL const sk_i32* offsets, SK_GLOBAL const sk_u32* counts,
+                                       SK_GLOBAL SetkaHit* hits, SK_GLOBAL const sk_block* blocks, SK_GLOBAL const sk_u32* groups,
+                                  SK_GLOBAL const sk_cell_list* cells,
                                        SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
                                        SK_GLOBAL const sk_u32* instance_starts,
                                        SK_GLOBAL const SetkaInstance* instances) {
@@ -68,7 +68,7 @@ SK_KERNEL void trace_grid_closest_free(sk_u32 n, sk_u32 first, SetkaGridHeader g
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
         const sk_grid_tables tables =
-            sk_make_tables(occupancy, offsets, counts, references, triangles, instance_starts, instances);
+            sk_make_tables(blocks, groups, cells, references, triangles, instance_starts, instances);
         const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
         const sk_walk walk = sk_walk_cells(grid, params, ray, tables, skipped, 0);
         hits[i] = sk_make_hit(params, ray, instance_starts, walk.best);
@@ -77,8 +77,8 @@ SK_KERNEL void trace_grid_closest_free(sk_u32 n, sk_u32 first, SetkaGridHeader g
 
 SK_KERNEL void trace_grid_any_dda(sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
                                   SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
-                                  SK_GLOBAL sk_u32* occluded, SK_GLOBAL const sk_u32* occupancy,
-                                  SK_GLOBAL const sk_i32* offsets, SK_GLOBAL const sk_u32* counts,
+                                  SK_GLOBAL sk_u32* occluded, SK_GLOBAL const sk_block* blocks, SK_GLOBAL const sk_u32* groups,
+                                  SK_GLOBAL const sk_cell_list* cells,
                                   SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
                                   SK_GLOBAL const sk_u32* instance_starts,
                                   SK_GLOBAL const SetkaInstance* instances) {
@@ -86,7 +86,7 @@ SK_KERNEL void trace_grid_any_dda(sk_u32 n, sk_u32 first, SetkaGridHeader grid, 
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
         const sk_grid_tables tables =
-            sk_make_tables(occupancy, offsets, counts, references, triangles, instance_starts, instances);
+            sk_make_tables(blocks, groups, cells, references, triangles, instance_starts, instances);
         const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
         const sk_walk walk = sk_walk_grid(grid, params, ray, tables, skipped, 1);
         occluded[i] = walk.best.triangle != SETKA_NO_HIT ? 1u : 0u;
@@ -95,8 +95,8 @@ SK_KERNEL void trace_grid_any_dda(sk_u32 n, sk_u32 first, SetkaGridHeader grid, 
 
 SK_KERNEL void trace_grid_any_free(sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
                                    SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
-                                   SK_GLOBAL sk_u32* occluded, SK_GLOBAL const sk_u32* occupancy,
-                                   SK_GLOBAL const sk_i32* offsets, SK_GLOBAL const sk_u32* counts,
+                                   SK_GLOBAL sk_u32* occluded, SK_GLOBAL const sk_block* blocks, SK_GLOBAL const sk_u32* groups,
+                                  SK_GLOBAL const sk_cell_list* cells,
                                    SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
                                    SK_GLOBAL const sk_u32* instance_starts,
                                    SK_GLOBAL const SetkaInstance* instances) {
@@ -104,7 +104,7 @@ SK_KERNEL void trace_grid_any_free(sk_u32 n, sk_u32 first, SetkaGridHeader grid,
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
         const sk_grid_tables tables =
-            sk_make_tables(occupancy, offsets, counts, references, triangles, instance_starts, instances);
+            sk_make_tables(blocks, groups, cells, references, triangles, instance_starts, instances);
         const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
         const sk_walk walk = sk_walk_cells(grid, params, ray, tables, skipped, 1);
         occluded[i] = walk.best.triangle != SETKA_NO_HIT ? 1u : 0u;
@@ -113,8 +113,8 @@ SK_KERNEL void trace_grid_any_free(sk_u32 n, sk_u32 first, SetkaGridHeader grid,
 
 SK_KERNEL void trace_grid_cost_dda(sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
                                    SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
-                                   SK_GLOBAL SetkaTraceCost* costs, SK_GLOBAL const sk_u32* occupancy,
-                                   SK_GLOBAL const sk_i32* offsets, SK_GLOBAL const sk_u32* counts,
+                                   SK_GLOBAL SetkaTraceCost* costs, SK_GLOBAL const sk_block* blocks, SK_GLOBAL const sk_u32* groups,
+                                  SK_GLOBAL const sk_cell_list* cells,
                                    SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
                                    SK_GLOBAL const sk_u32* instance_starts,
                                    SK_GLOBAL const SetkaInstance* instances) {
@@ -122,7 +122,7 @@ SK_KERNEL void trace_grid_cost_dda(sk_u32 n, sk_u32 first, SetkaGridHeader grid,
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
         const sk_grid_tables tables =
-            sk_make_tables(occupancy, offsets, counts, references, triangles, instance_starts, instances);
+            sk_make_tables(blocks, groups, cells, references, triangles, instance_starts, instances);
         const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
         const sk_walk walk = sk_walk_grid(grid, params, ray, tables, skipped, 0);
         costs[i] = walk.cost;
@@ -131,8 +131,8 @@ SK_KERNEL void trace_grid_cost_dda(sk_u32 n, sk_u32 first, SetkaGridHeader grid,
 
 SK_KERNEL void trace_grid_cost_free(sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
                                     SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
-                                    SK_GLOBAL SetkaTraceCost* costs, SK_GLOBAL const sk_u32* occupancy,
-                                    SK_GLOBAL const sk_i32* offsets, SK_GLOBAL const sk_u32* counts,
+                                    SK_GLOBAL SetkaTraceCost* costs, SK_GLOBAL const sk_block* blocks, SK_GLOBAL const sk_u32* groups,
+                                  SK_GLOBAL const sk_cell_list* cells,
                                     SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
                                     SK_GLOBAL const sk_u32* instance_starts,
                                     SK_GLOBAL const SetkaInstance* instances) {
@@ -140,7 +140,7 @@ SK_KERNEL void trace_grid_cost_free(sk_u32 n, sk_u32 first, SetkaGridHeader grid
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
         const sk_grid_tables tables =
-            sk_make_tables(occupancy, offsets, counts, references, triangles, instance_starts, instances);
+            sk_make_tables(blocks, groups, cells, references, triangles, instance_starts, instances);
         const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
         const sk_walk walk = sk_walk_cells(grid, params, ray, tables, skipped, 0);
         costs[i] = walk.cost;

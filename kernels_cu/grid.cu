@@ -3,7 +3,6 @@
 #include "platform.h"
 
 #include "device/grid/build.h"
-#include "device/grid/occupancy.h"
 
 SK_KERNEL void grid_transform(sk_u32 n, sk_u32 instance_count, SK_GLOBAL const float* positions,
                               SK_GLOBAL const sk_u32* indices, SK_GLOBAL const SetkaInstance* instances,
@@ -60,13 +59,9 @@ SK_KERNEL void grid_cells_search(sk_u32 n, sk_u32 pair_count, SK_GLOBAL const sk
     if (c < n) sk_grid_cells_search(c, pair_count, cells, offsets, counts);
 }
 
-SK_KERNEL void grid_occupancy_fine(sk_u32 n, SetkaGridHeader grid, SK_GLOBAL const sk_i32* offsets,
-                                   SK_GLOBAL sk_u32* occupancy) {
-    const sk_u32 w = sk_global_id();
-    if (w < n) sk_occupancy_fine(w, grid, offsets, occupancy);
-}
-
-SK_KERNEL void grid_occupancy_coarse(sk_u32 n, SetkaGridHeader grid, SK_GLOBAL sk_u32* occupancy) {
-    const sk_u32 w = sk_global_id();
-    if (w < n) sk_occupancy_coarse(w, grid, occupancy);
+SK_KERNEL void grid_mark(sk_u32 n, sk_u32 first, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
+                         SK_GLOBAL const sk_u32* row_triangles, SK_GLOBAL const sk_u32* row_starts,
+                         SK_GLOBAL sk_u32* counters) {
+    const sk_u32 r = first + sk_global_id();
+    if (r < n) sk_grid_mark(r, grid, triangles, row_triangles, row_starts, counters);
 }

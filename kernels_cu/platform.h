@@ -9,6 +9,7 @@
 #define SK_LOCAL
 #define SK_LOCAL_STORAGE __shared__
 #define SK_RESTRICT __restrict__
+#define SK_ALIGNED(bytes) __align__(bytes)
 #define SK_BARRIER() __syncthreads()
 
 #define SK_WIDTH 1u
@@ -25,6 +26,7 @@ typedef unsigned long long sk_u64;
 #define sk_bits_float(u) __uint_as_float(u)
 #define sk_sqrt(f) __fsqrt_rn(f)
 #define sk_floor(f) floorf(f)
+#define sk_popcount(u) ((sk_u32)__popc(u))
 #define sk_atomic_min(p, v) atomicMin(p, v)
 #define sk_atomic_add(p, v) atomicAdd(p, v)
 

@@ -10,10 +10,11 @@
 
 namespace setka {
 
-/// How the offset and count of each cell are found in the sorted pairs. The tables are the same either way.
+/// How the lists of the cells come about. The tables are the same in any case.
 enum class CellTables {
-    RunBoundaries,  ///< each pair compares its cell with its neighbours': reads the pairs once
-    BinarySearch,   ///< each cell searches for its first and last pair, as in section 2.3 of the paper
+    Scatter,        ///< triangles are counted in their cells, take places in the lists, and each list is put in order
+    RunBoundaries,  ///< pairs are sorted by cell; each compares its cell with its neighbours': reads the pairs once
+    BinarySearch,   ///< the same, but each cell searches for its first and last pair, as in section 2.3 of the paper
 };
 
 struct GridOptions {
@@ -21,7 +22,7 @@ struct GridOptions {
     float density = 4;
     /// The most cells along one axis, from 1 to 4096.
     std::uint32_t max_cells_per_axis = 2048;
-    CellTables cell_tables = CellTables::RunBoundaries;
+    CellTables cell_tables = CellTables::Scatter;
 };
 
 /// Cells of a grid as options and bounds determine them, computed on the host.
@@ -56,6 +57,7 @@ class GridPlan {
     friend class UniformGridBuilder;
     ::SetkaGridHeader header_{};
     std::uint64_t row_count_ = 0;
+    std::uint32_t cell_list_count_ = 0;  ///< cells that are not empty
     std::uint64_t table_bytes_ = 0;
     std::uint64_t peak_bytes_ = 0;
     WorldGeometry geometry_;
@@ -64,32 +66,47 @@ class GridPlan {
     Buffer<std::uint32_t> row_offsets_;
 };
 
-/// The finished grid: three tables, as laid down at SetkaGridHeader, and what walks skip empty space by.
+/// The paper's tables, as laid down at SetkaGridHeader: 8 bytes a cell, and the references.
+struct GridTables {
+    Buffer<std::int32_t> offsets;
+    Buffer<std::uint32_t> counts;
+    Buffer<std::uint32_t> references;
+};
+
+/// The same as a grid keeps it: a record for each block of 4 x 4 x 4 cells and for each cell that is not empty, some 0.25 bytes a
+/// cell and 8 bytes a list. May change from version to version (src/device/grid/blocks.h).
+struct CompactTables {
+    Buffer<std::uint32_t> blocks;      ///< 4 words each
+    Buffer<std::uint32_t> groups;      ///< 2 words for each 4 x 4 x 4 blocks, a bit for each that is not empty
+    Buffer<std::uint32_t> cells;       ///< 2 words each
+    Buffer<std::uint32_t> references;  ///< block after block
+    std::uint32_t longest_list = 0;    ///< 0 where no list is long
+};
+
+/// The finished grid.
 class Grid final : public Structure {
   public:
-    /// Puts tables together, and derives what walks need besides. Throws InvalidArgument if offsets or counts do not have one
-    /// element for each cell.
-    Grid(Queue& queue, WorldGeometry geometry, const ::SetkaGridHeader& header, Buffer<std::int32_t> offsets,
-         Buffer<std::uint32_t> counts, Buffer<std::uint32_t> references);
+    /// Puts a grid together from flat tables; waits. Throws InvalidArgument if offsets or counts do not have one element for each
+    /// cell, or if the counts do not add up to the references. Whether the rest is sound is validate()'s question.
+    Grid(Queue& queue, WorldGeometry geometry, const ::SetkaGridHeader& header, const GridTables& tables);
 
     [[nodiscard]] StructureKind kind() const noexcept override { return StructureKind::UniformGrid; }
     [[nodiscard]] std::vector<Section> sections() const override;
     [[nodiscard]] const ::SetkaGridHeader& header() const noexcept { return header_; }
-    [[nodiscard]] const Buffer<std::int32_t>& offsets() const noexcept { return offsets_; }
-    [[nodiscard]] const Buffer<std::uint32_t>& counts() const noexcept { return counts_; }
-    [[nodiscard]] const Buffer<std::uint32_t>& references() const noexcept { return references_; }
-    /// One bit a cell and one for each 4 x 4 x 4 cells, 1 where not empty. Follows from the offsets, is not part of the digest and
-    /// may change from version to version (src/device/grid/occupancy.h).
-    [[nodiscard]] const Buffer<std::uint32_t>& occupancy() const noexcept { return occupancy_; }
-    /// XXH3-128 over header (64 bytes), offsets, counts and references, little-endian, in this order. Waits and downloads.
+    /// What is kept on the device, and what rays are traced through.
+    [[nodiscard]] const CompactTables& compact_tables() const noexcept { return tables_; }
+    /// The paper's tables, made anew by each call on the device. They need 8 bytes a cell and 4 a reference, and 4 bytes a cell more
+    /// meanwhile.
+    [[nodiscard]] GridTables tables(Queue& queue) const;
+    /// XXH3-128 over header (64 bytes), offsets, counts and references of tables(), little-endian, in this order. Waits and downloads.
     [[nodiscard]] Digest digest(Queue& queue) const;
 
   private:
+    friend class UniformGridBuilder;
+    Grid(WorldGeometry geometry, const ::SetkaGridHeader& header, CompactTables tables);
+
     ::SetkaGridHeader header_;
-    Buffer<std::int32_t> offsets_;
-    Buffer<std::uint32_t> counts_;
-    Buffer<std::uint32_t> references_;
-    Buffer<std::uint32_t> occupancy_;
+    CompactTables tables_;
 };
 
 /// Builds grids. The library has one implementation, on Queue; tests bring a second, scalar one.

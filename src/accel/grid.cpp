@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "setka/grid.hpp"
-#include "accel/occupancy.hpp"
+#include "accel/compact_tables.hpp"
 #include "accel/world_geometry.hpp"
 #include "core/digest.hpp"
 #include "setka/error.hpp"
@@ -18,44 +18,35 @@ void check_dims(const ::SetkaGridHeader& header) {
                             "; 1 to 4096 each are accepted");
 }
 
-void check_cells(const char* name, std::size_t size, const ::SetkaGridHeader& header) {
-    const std::uint64_t cells = std::uint64_t(header.dims[0]) * header.dims[1] * header.dims[2];
-    if (size != cells)
-        throw Error(ErrorCategory::InvalidArgument, std::string(name) + " has " + std::to_string(size) +
-                                                        " elements; the header's dims ask for " +
-                                                        std::to_string(cells));
-}
-
 }  // namespace
 
-Grid::Grid(Queue& queue, WorldGeometry geometry, const ::SetkaGridHeader& header,
-           Buffer<std::int32_t> offsets, Buffer<std::uint32_t> counts, Buffer<std::uint32_t> references)
-    : Structure(std::move(geometry)),
-      header_(header),
-      offsets_(std::move(offsets)),
-      counts_(std::move(counts)),
-      references_(std::move(references)) {
+Grid::Grid(Queue& queue, WorldGeometry geometry, const ::SetkaGridHeader& header, const GridTables& tables)
+    : Structure(std::move(geometry)), header_(header) {
     check_dims(header);
-    check_cells("offsets", offsets_.size(), header);
-    check_cells("counts", counts_.size(), header);
-    occupancy_ = make_occupancy(queue, header_, offsets_);
+    tables_ = import_tables(queue, header, tables);
 }
+
+Grid::Grid(WorldGeometry geometry, const ::SetkaGridHeader& header, CompactTables tables)
+    : Structure(std::move(geometry)), header_(header), tables_(std::move(tables)) {}
 
 std::vector<Section> Grid::sections() const {
     auto sections = geometry_sections(geometry());
-    sections.push_back({"offsets", offsets_.size_bytes()});
-    sections.push_back({"counts", counts_.size_bytes()});
-    sections.push_back({"references", references_.size_bytes()});
-    sections.push_back({"occupancy", occupancy_.size_bytes()});
+    sections.push_back({"blocks", tables_.blocks.size_bytes()});
+    sections.push_back({"groups", tables_.groups.size_bytes()});
+    sections.push_back({"cells", tables_.cells.size_bytes()});
+    sections.push_back({"references", tables_.references.size_bytes()});
     return sections;
 }
 
+GridTables Grid::tables(Queue& queue) const { return export_tables(queue, header_, tables_); }
+
 Digest Grid::digest(Queue& queue) const {
+    const GridTables flat = tables(queue);
     Digester digester;
     digester.add(std::as_bytes(std::span(&header_, 1)));
-    digester.add(queue.download(offsets_));
-    digester.add(queue.download(counts_));
-    digester.add(queue.download(references_));
+    digester.add(queue.download(flat.offsets));
+    digester.add(queue.download(flat.counts));
+    digester.add(queue.download(flat.references));
     return digester.digest();
 }
 

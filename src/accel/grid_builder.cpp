@@ -8,7 +8,7 @@
 #include <string>
 
 #include "accel/grid_resolution.hpp"
-#include "accel/occupancy.hpp"
+#include "accel/compact_tables.hpp"
 #include "accel/world_geometry.hpp"
 #include "algo/reduce.hpp"
 #include "algo/scan.hpp"
@@ -44,16 +44,25 @@ std::uint64_t count_bytes(Queue& queue, std::uint64_t triangles, std::uint64_t r
            scan_scratch_bytes(queue, static_cast<std::uint32_t>(rows));
 }
 
+/// The bytes that finding out which cells are not empty holds.
+std::uint64_t mark_bytes(const Device& device, const ::SetkaGridHeader& header) {
+    const std::uint32_t blocks = block_count(header);
+    return (SK_TOTALS + blocks * (SK_BLOCK_CELLS + block_words)) * word + block_sums_bytes(device, blocks);
+}
+
 /// The most bytes that a build holds at a time: one line for each point where a stage has all its buffers.
-std::uint64_t peak_bytes_of(Queue& queue, const ::SetkaGridHeader& header, std::uint64_t row_count) {
+std::uint64_t peak_bytes_of(Queue& queue, const ::SetkaGridHeader& header, std::uint64_t row_count,
+                            std::uint32_t cells) {
     const std::uint64_t n = header.triangle_count, p = header.reference_count, c = header.cell_count;
     const auto n32 = static_cast<std::uint32_t>(n), p32 = static_cast<std::uint32_t>(p);
-    const std::uint64_t pairs = 2 * p * word;
+    const std::uint64_t pairs = 2 * p * word, flat = (2 * c + p) * word;
     return world_bytes(n) + std::max({word + reduce_scratch_bytes(queue.device(), n32),
                                       n * word + (n + 1) * word + scan_scratch_bytes(queue, n32),
-                                      count_bytes(queue, n, row_count), row_table_bytes(n, row_count) + pairs,
+                                      count_bytes(queue, n, row_count),
+                                      row_table_bytes(n, row_count) + mark_bytes(queue.device(), header),
+                                      row_table_bytes(n, row_count) + pairs,
                                       pairs + sort_scratch_bytes(queue, p32, key_bits_of(header)),
-                                      pairs + (2 * c + occupancy_words(header.dims)) * word});
+                                      pairs + 2 * c * word, flat + import_bytes(queue.device(), header, cells)});
 }
 
 /// The most rows of one launch where a stop can be requested: a fraction of a second of work, even if each is
@@ -116,8 +125,9 @@ class UniformGridBuilder final : public GridBuilder {
         count_rows(queue, plan);
         check_rows(queue, plan, held_before);
         count_pairs(queue, plan);
+        mark_cells(queue, plan);
         plan.table_bytes_ = table_bytes_of(plan);
-        plan.peak_bytes_ = peak_bytes_of(queue, plan.header_, plan.row_count_);
+        plan.peak_bytes_ = peak_bytes_of(queue, plan.header_, plan.row_count_, plan.cell_list_count_);
         check_memory(queue.device(), plan, held_before);
         return plan;
     }
@@ -149,9 +159,10 @@ class UniformGridBuilder final : public GridBuilder {
             launch_items(queue, Kernel::grid_cells_mark, pair_count, cells, offsets, counts);
             launch_items(queue, Kernel::grid_cells_close, header.cell_count, offsets, counts);
         }
-        queue.impl().begin_stage("occupancy");
-        Grid grid(queue, std::move(plan.geometry_), header, std::move(offsets), std::move(counts),
-                  std::move(references));
+        cells = {};
+        queue.impl().begin_stage("blocks");
+        Grid grid(queue, std::move(plan.geometry_), header,
+                  GridTables{std::move(offsets), std::move(counts), std::move(references)});
         queue.impl().begin_stage("other");
         return grid;
     }
@@ -197,9 +208,25 @@ class UniformGridBuilder final : public GridBuilder {
         plan.header_.reference_count = static_cast<std::uint32_t>(pairs);
     }
 
+    /// How many cells are not empty: their records are part of the tables.
+    void mark_cells(Queue& queue, GridPlan& plan) const {
+        const ::SetkaGridHeader& header = plan.header_;
+        const std::uint32_t n = block_count(header);
+        const auto counters = queue.make_buffer<std::uint32_t>(std::size_t(n) * SK_BLOCK_CELLS, "cell counters");
+        queue.impl().fill(*counters.memory(), 0, counters.size_bytes());
+        launch_range(queue, Kernel::grid_mark, static_cast<std::uint32_t>(plan.row_count_),
+                     rows_a_launch(queue.device(), header), header, plan.geometry_.triangles,
+                     plan.row_triangles_, plan.row_starts_, counters);
+        const auto blocks = queue.make_buffer<std::uint32_t>(n * block_words, "blocks");
+        const auto totals = make_totals(queue);
+        launch_items(queue, Kernel::blocks_count, n, counters, blocks, totals);
+        (void)enqueue_block_sums(queue, blocks, totals);
+        plan.cell_list_count_ = read_totals(queue, totals).cells;
+    }
+
     static std::uint64_t table_bytes_of(const GridPlan& plan) {
-        std::uint64_t sum = (2 * std::uint64_t(plan.header_.cell_count) + plan.header_.reference_count +
-                             occupancy_words(plan.header_.dims)) *
+        std::uint64_t sum = (block_count(plan.header_) * block_words + group_count(plan.header_) * group_words +
+                             plan.cell_list_count_ * cell_words + plan.header_.reference_count) *
                             word;
         for (const Section& section : geometry_sections(plan.geometry_)) sum += section.size_bytes;
         return sum;

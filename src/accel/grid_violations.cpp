@@ -103,7 +103,7 @@ void check_size(std::vector<std::string>& list, const char* table, std::uint64_t
     require(list, size == needed, table, " has ", size, " elements; ", why, " asks for ", needed);
 }
 
-void check_sizes(const GridTables& tables, std::vector<std::string>& list) {
+void check_sizes(const HostTables& tables, std::vector<std::string>& list) {
     const ::SetkaGridHeader& h = tables.header;
     check_size(list, "offsets", tables.offsets.size(), h.cell_count, "cell_count");
     check_size(list, "counts", tables.counts.size(), h.cell_count, "cell_count");
@@ -135,7 +135,7 @@ Bounds check_triangles(std::span<const float> triangles, std::vector<std::string
 
 /// The box is the triangles', and the grid's cells are laid out in it: else a walk could leave the grid or
 /// never end.
-void check_box(const GridTables& tables, const Bounds& box, std::vector<std::string>& list) {
+void check_box(const HostTables& tables, const Bounds& box, std::vector<std::string>& list) {
     const ::SetkaGridHeader& h = tables.header;
     for (int axis = 0; axis < 3; ++axis) {
         const float lower = tables.bounds.lower[axis], upper = tables.bounds.upper[axis];
@@ -156,7 +156,7 @@ void check_box(const GridTables& tables, const Bounds& box, std::vector<std::str
             "; the longest side of the bounds is ", extent_of(tables.bounds));
 }
 
-void check_instances(const GridTables& tables, std::vector<std::string>& list) {
+void check_instances(const HostTables& tables, std::vector<std::string>& list) {
     const auto starts = tables.instance_starts;
     const auto instances = tables.instances;
     require(list, starts.front() == 0, "instance starts: the first is ", starts.front(), "; 0 is accepted");
@@ -176,7 +176,7 @@ void check_instances(const GridTables& tables, std::vector<std::string>& list) {
 }
 
 /// Every list lies behind the one before it, and the last ends where the references end.
-bool check_cells(const GridTables& tables, std::vector<std::string>& list) {
+bool check_cells(const HostTables& tables, std::vector<std::string>& list) {
     const std::uint64_t references = tables.references.size();
     Invariant half_empty(list), misplaced(list), too_long(list), wrong_sum(list);
     std::uint64_t end = 0;  // of the lists so far; 2^31 counts of 32 bits fit
@@ -201,7 +201,7 @@ bool check_cells(const GridTables& tables, std::vector<std::string>& list) {
     return half_empty.holds() && misplaced.holds() && too_long.holds() && wrong_sum.holds();
 }
 
-void check_references(const GridTables& tables, std::vector<std::string>& list) {
+void check_references(const HostTables& tables, std::vector<std::string>& list) {
     Invariant out_of_range(list);
     for (std::size_t i = 0; i < tables.references.size(); ++i)
         if (tables.references[i] >= tables.header.triangle_count)
@@ -210,7 +210,7 @@ void check_references(const GridTables& tables, std::vector<std::string>& list) 
 }
 
 /// Lists tile the references: check_cells() found nothing.
-void check_order(const GridTables& tables, std::vector<std::string>& list) {
+void check_order(const HostTables& tables, std::vector<std::string>& list) {
     Invariant unordered(list);
     std::size_t first = 0;
     for (std::size_t cell = 0; cell < tables.counts.size(); ++cell) {
@@ -223,7 +223,7 @@ void check_order(const GridTables& tables, std::vector<std::string>& list) {
     }
 }
 
-[[gnu::noinline]] std::vector<std::string> examine(const GridTables& tables) {
+[[gnu::noinline]] std::vector<std::string> examine(const HostTables& tables) {
     std::vector<std::string> list;
     check_counts(tables.header, list);
     check_numbers(tables.header, list);
@@ -240,7 +240,7 @@ void check_order(const GridTables& tables, std::vector<std::string>& list) {
 
 }  // namespace
 
-std::vector<std::string> violations_of(const GridTables& tables) {
+std::vector<std::string> violations_of(const HostTables& tables) {
     // Sound tables stay sound in a thread that flushes subnormals.
     const FloatEnvironment environment;
     return examine(tables);

@@ -12,7 +12,7 @@
 namespace setka {
 
 /// Everything that a grid consists of, on the host.
-struct GridTables {
+struct HostTables {
     ::SetkaGridHeader header{};
     Bounds bounds{};
     std::span<const std::int32_t> offsets;
@@ -27,6 +27,6 @@ struct GridTables {
 /// are. Empty for what a builder made. Tables without violations keep every kernel inside them and every walk
 /// finite, whoever wrote them; whether a list holds what it should is not looked at. Safe for any content and
 /// any sizes.
-[[nodiscard]] std::vector<std::string> violations_of(const GridTables& tables);
+[[nodiscard]] std::vector<std::string> violations_of(const HostTables& tables);
 
 }  // namespace setka

@@ -8,7 +8,7 @@ namespace setka::cli {
 
 GridStatistics grid_statistics(Queue& queue, const Grid& grid) {
     GridStatistics statistics;
-    for (const std::uint32_t count : queue.download(grid.counts())) {
+    for (const std::uint32_t count : queue.download(grid.tables(queue).counts)) {
         statistics.empty_cells += count == 0;
         statistics.longest_list = std::max(statistics.longest_list, count);
     }

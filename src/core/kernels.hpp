@@ -12,7 +12,9 @@
     X(reduce_bounds) X(reduce_bounds_partial)                                                              \
     X(grid_transform) X(grid_rows) X(grid_row_list) X(grid_count) X(grid_emit)                             \
     X(grid_cells_clear) X(grid_cells_mark) X(grid_cells_close) X(grid_cells_search)                        \
-    X(grid_occupancy_fine) X(grid_occupancy_coarse)                                                        \
+    X(grid_mark)                                                                                           \
+    X(blocks_reduce) X(blocks_spine) X(blocks_apply) X(blocks_count) X(blocks_group)                       \
+    X(import_blocks) X(import_cells) X(export_counts) X(export_offsets) X(lists_move) X(lists_move_long)   \
     X(trace_pack) X(trace_brute_closest) X(trace_brute_any)                                                \
     X(trace_grid_closest_dda) X(trace_grid_closest_free) X(trace_grid_any_dda) X(trace_grid_any_free)      \
     X(trace_grid_cost_dda) X(trace_grid_cost_free)                                                         \

@@ -9,13 +9,15 @@
  *   SK_GLOBAL, SK_LOCAL      before the type of a pointer to global or local memory
  *   SK_LOCAL_STORAGE         before an array in local memory, at the top of a kernel entry only
  *   SK_RESTRICT              on a pointer that nothing else aliases
+ *   SK_ALIGNED(bytes)        before the name of a struct whose members are loaded at once
  *   SK_WIDTH                 how many equal calculations a work-item does best side by side: 1 where work-items run in step
  *   SK_BARRIER()             all work-items of the group; orders local memory; in uniform control flow only
  *   sk_u32 sk_i32 sk_u64     integers
  *   sk_global_id() sk_local_id() sk_group_id() sk_local_size()   as sk_u32
  *   sk_float_bits(f) sk_bits_float(u)                            bit casts
  *   sk_sqrt(f) sk_floor(f)                                       correctly rounded
- *   sk_atomic_min(p, v) sk_atomic_add(p, v)                      on global sk_u32; order-free uses only
+ *   sk_popcount(u)                                               how many bits of a sk_u32 are set
+ *   sk_atomic_min(p, v) sk_atomic_add(p, v)                      on global sk_u32, return what was there; order-free uses only
  *
  * Not allowed: fma, mad, min, max, clamp, rsqrt, dot, cross, normalize, pow, exp, log, sin, float3, doubles, sub-groups,
  * float atomics, recursion, `return` before a barrier, a float to integer cast of a value that was not range-checked.
@@ -24,7 +26,7 @@
 #define SETKA_DEVICE_DIALECT_H
 
 #if !defined(SK_KERNEL) || !defined(SK_FUNCTION) || !defined(SK_GLOBAL) || !defined(SK_LOCAL) || \
-    !defined(SK_LOCAL_STORAGE) || !defined(SK_RESTRICT) || !defined(SK_BARRIER) || !defined(SK_WIDTH)
+    !defined(SK_LOCAL_STORAGE) || !defined(SK_RESTRICT) || !defined(SK_BARRIER) || !defined(SK_WIDTH) || !defined(SK_ALIGNED)
 #error "include a platform.h before dialect.h"
 #endif
 

@@ -24,6 +24,7 @@ static_assert(FLT_EVAL_METHOD == 0, "float expressions must be rounded to float 
 #define SK_LOCAL
 #define SK_LOCAL_STORAGE
 #define SK_RESTRICT __restrict
+#define SK_ALIGNED(bytes) alignas(bytes)
 #define SK_BARRIER() ((void)0)
 
 #ifndef SK_WIDTH
@@ -42,6 +43,7 @@ inline thread_local sk_u32 sk_host_group = 0;
 #define sk_local_size() (sk_u32{1})
 #define sk_float_bits(f) (std::bit_cast<sk_u32>(f))
 #define sk_bits_float(u) (std::bit_cast<float>(u))
+#define sk_popcount(u) (static_cast<sk_u32>(std::popcount(sk_u32{u})))
 #define sk_sqrt(f) (std::sqrt(f))
 #define sk_floor(f) (std::floor(f))
 

@@ -36,7 +36,7 @@ constexpr const char* names[place_count] = {"header",     "bounds",    "offsets"
 constexpr std::size_t element_bytes[place_count] = {sizeof(::SetkaGridHeader), sizeof(Bounds), 4, 4, 4, 36, 4,
                                                     sizeof(::SetkaInstance)};
 
-Digest digest_of(const GridTables& tables) {
+Digest digest_of(const HostTables& tables) {
     Digester digester;
     digester.add(std::as_bytes(std::span(&tables.header, 1)));
     digester.add(std::as_bytes(tables.offsets));
@@ -52,7 +52,7 @@ std::uint32_t common_mask_of(std::span<const ::SetkaInstance> list) {
 }
 
 /// What is wrong with the counts that WorldGeometry keeps beside its tables.
-std::vector<std::string> geometry_violations(const WorldGeometry& geometry, const GridTables& tables) {
+std::vector<std::string> geometry_violations(const WorldGeometry& geometry, const HostTables& tables) {
     std::vector<std::string> list;
     const auto require = [&](const char* member, std::uint32_t is, std::uint32_t should_be) {
         if (is != should_be)
@@ -68,16 +68,17 @@ std::vector<std::string> geometry_violations(const WorldGeometry& geometry, cons
 /// A grid's tables inside the bytes of its file.
 struct HostGrid {
     SectionWriter writer;
-    GridTables tables;
+    HostTables tables;
 };
 
 HostGrid download(Queue& queue, const Grid& grid) {
     const WorldGeometry& geometry = grid.geometry();
+    const GridTables flat = grid.tables(queue);
     const std::uint64_t sizes[place_count] = {sizeof(::SetkaGridHeader),
                                               sizeof(Bounds),
-                                              grid.offsets().size_bytes(),
-                                              grid.counts().size_bytes(),
-                                              grid.references().size_bytes(),
+                                              flat.offsets.size_bytes(),
+                                              flat.counts.size_bytes(),
+                                              flat.references.size_bytes(),
                                               geometry.triangles.size_bytes(),
                                               geometry.instance_starts.size_bytes(),
                                               geometry.instances.size_bytes()};
@@ -91,16 +92,16 @@ HostGrid download(Queue& queue, const Grid& grid) {
     };
     host.writer.section<::SetkaGridHeader>(header)[0] = host.tables.header = grid.header();
     host.writer.section<Bounds>(bounds)[0] = host.tables.bounds = geometry.bounds;
-    host.tables.offsets = fetch(offsets, grid.offsets());
-    host.tables.counts = fetch(counts, grid.counts());
-    host.tables.references = fetch(references, grid.references());
+    host.tables.offsets = fetch(offsets, flat.offsets);
+    host.tables.counts = fetch(counts, flat.counts);
+    host.tables.references = fetch(references, flat.references);
     host.tables.triangles = fetch(triangles, geometry.triangles);
     host.tables.instance_starts = fetch(instance_starts, geometry.instance_starts);
     host.tables.instances = fetch(instances, geometry.instances);
     return host;
 }
 
-std::vector<std::string> violations_of(const Grid& grid, const GridTables& tables) {
+std::vector<std::string> violations_of(const Grid& grid, const HostTables& tables) {
     auto list = violations_of(tables);
     for (std::string& text : geometry_violations(grid.geometry(), tables)) list.push_back(std::move(text));
     return list;
@@ -144,13 +145,13 @@ void check_names(SavedStructure& saved) {
 }
 
 /// Tables in place; check_names() found nothing.
-GridTables tables_in(std::span<const std::byte> bytes, const SavedStructure& saved) {
+HostTables tables_in(std::span<const std::byte> bytes, const SavedStructure& saved) {
     const auto view = [&]<typename T>(Place place, std::span<const T>& target) {
         const SavedSection& section = saved.sections[place];
         target = {reinterpret_cast<const T*>(bytes.data() + section.offset_bytes),
                   section.size_bytes / sizeof(T)};
     };
-    GridTables tables;
+    HostTables tables;
     std::memcpy(&tables.header, bytes.data() + saved.sections[header].offset_bytes, sizeof tables.header);
     std::memcpy(&tables.bounds, bytes.data() + saved.sections[bounds].offset_bytes, sizeof tables.bounds);
     view(offsets, tables.offsets);
@@ -165,7 +166,7 @@ GridTables tables_in(std::span<const std::byte> bytes, const SavedStructure& sav
 /// What inspect() tells, and the tables unless there are violations.
 struct Examined {
     SavedStructure saved;
-    std::optional<GridTables> tables;
+    std::optional<HostTables> tables;
 };
 
 Examined examine(std::span<const std::byte> bytes) {
@@ -184,7 +185,7 @@ Examined examine(std::span<const std::byte> bytes) {
                                                     "; this build reads kind 1, the uniform grid");
     check_names(saved);
     if (!saved.violations.empty()) return result;
-    const GridTables tables = tables_in(bytes, saved);
+    const HostTables tables = tables_in(bytes, saved);
     saved.grid = tables.header;
     if (digest_of(tables) != saved.digest)
         saved.violations.push_back("its digest is " + digest_of(tables).to_string() + "; its header says " +
@@ -201,7 +202,7 @@ Grid upload(Queue& queue, const Examined& examined) {
         throw Error(ErrorCategory::InvalidData,
                     violations.front() + (others > 0 ? " (and " + std::to_string(others) + " more)" : ""));
     }
-    const GridTables& tables = *examined.tables;
+    const HostTables& tables = *examined.tables;
     WorldGeometry geometry;
     geometry.bounds = tables.bounds;
     geometry.triangle_count = tables.header.triangle_count;
@@ -210,11 +211,9 @@ Grid upload(Queue& queue, const Examined& examined) {
     geometry.triangles = queue.upload(tables.triangles, "world triangles");
     geometry.instance_starts = queue.upload(tables.instance_starts, "instance starts");
     geometry.instances = queue.upload(tables.instances, "instances");
-    auto device_offsets = queue.upload(tables.offsets, "offsets");
-    auto device_counts = queue.upload(tables.counts, "counts");
-    auto device_references = queue.upload(tables.references, "references");
-    return Grid(queue, std::move(geometry), tables.header, std::move(device_offsets), std::move(device_counts),
-                std::move(device_references));
+    const GridTables flat{queue.upload(tables.offsets, "offsets"), queue.upload(tables.counts, "counts"),
+                          queue.upload(tables.references, "references")};
+    return Grid(queue, std::move(geometry), tables.header, flat);
 }
 
 /// work(bytes of the file), with the file's name in what it throws. A foreign file is refused by its first

@@ -85,10 +85,11 @@ struct Query {
             [&](const First&... values) {
                 if (structure.kind() == StructureKind::UniformGrid) {
                     const auto& grid = static_cast<const Grid&>(structure);
+                    const CompactTables& tables = grid.compact_tables();
                     launch_range(queue,
                                  options.step == GridStep::Dda ? kernels.grid_dda : kernels.grid_branch_free, n,
                                  most, values..., grid.header(), scene, batch.rays, batch.skip, particular...,
-                                 grid.occupancy(), grid.offsets(), grid.counts(), grid.references(),
+                                 tables.blocks, tables.groups, tables.cells, tables.references,
                                  geometry.triangles, geometry.instance_starts, geometry.instances);
                 } else {
                     const auto& brute_force = static_cast<const BruteForce&>(structure);

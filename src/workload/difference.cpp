@@ -233,8 +233,9 @@ class StepComparison {
 }  // namespace
 
 Tables download_tables(Queue& queue, const Grid& grid) {
-    return {grid.header(), queue.download(grid.offsets()), queue.download(grid.counts()),
-            queue.download(grid.references())};
+    const GridTables tables = grid.tables(queue);
+    return {grid.header(), queue.download(tables.offsets), queue.download(tables.counts),
+            queue.download(tables.references)};
 }
 
 std::string Difference::to_string() const {

@@ -101,7 +101,7 @@ TEST_P(Cancel, AStopThatWasRequestedBeforeLetsNothingStart) {
     queue.finish();  // waiting is no work
     (void)queue.take_timings();
     queue.set_stop_token({});
-    EXPECT_GT(setka::make_grid_builder()->build(queue, scene).references().size(), 0u);
+    EXPECT_GT(setka::make_grid_builder()->build(queue, scene).header().reference_count, 0u);
 }
 
 TEST_P(Cancel, CopiesOfAQueueShareItsToken) {

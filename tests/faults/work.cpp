@@ -25,10 +25,11 @@ class Bytes {
 };
 
 std::string grid_bytes(Queue& queue, const setka::Grid& grid) {
+    const setka::GridTables tables = grid.tables(queue);
     return Bytes()
-        .add(queue.download(grid.offsets()))
-        .add(queue.download(grid.counts()))
-        .add(queue.download(grid.references()))
+        .add(queue.download(tables.offsets))
+        .add(queue.download(tables.counts))
+        .add(queue.download(tables.references))
         .add(queue.download(grid.geometry().triangles))
         .get();
 }

@@ -45,15 +45,15 @@ TEST_P(Plan, IsExact) {
                 const setka::Grid grid = builder->build(queue, std::move(plan));
                 EXPECT_EQ(opened.peak_memory_bytes() - before, peak_bytes);
                 EXPECT_EQ(grid.size_bytes(), table_bytes);
+                const setka::CompactTables& kept = grid.compact_tables();
                 EXPECT_EQ(opened.memory_in_use_bytes() - before,
-                          grid.offsets().size_bytes() + grid.counts().size_bytes() +
-                              grid.references().size_bytes() + grid.occupancy().size_bytes() +
-                              grid.geometry().triangles.size_bytes())
+                          kept.blocks.size_bytes() + kept.groups.size_bytes() + kept.cells.size_bytes() +
+                              kept.references.size_bytes() + grid.geometry().triangles.size_bytes())
                     << "what is left beyond the scene is the grid alone";
                 std::uint64_t sum = 0;
                 for (const setka::Section& section : grid.sections()) sum += section.size_bytes;
                 EXPECT_EQ(sum, table_bytes);
-                EXPECT_EQ(grid.references().size(), pairs);
+                EXPECT_EQ(kept.references.size(), pairs);
                 EXPECT_EQ(grid.header().reference_count, pairs);
             }
         EXPECT_EQ(opened.memory_in_use_bytes(), device_scene.size_bytes()) << "all grids are gone";
@@ -137,7 +137,7 @@ TEST_P(GridErrors, AbsurdDensityIsRefusedCleanly) {
         EXPECT_EQ(error.category(), ErrorCategory::OutOfMemory) << error.what();
     }
     EXPECT_EQ(limited.memory_in_use_bytes(), device_scene.size_bytes());
-    EXPECT_GT(setka::make_grid_builder()->build(queue, device_scene).references().size(), 0u)
+    EXPECT_GT(setka::make_grid_builder()->build(queue, device_scene).header().reference_count, 0u)
         << "usable after it";
 }
 

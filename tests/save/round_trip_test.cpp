@@ -204,7 +204,7 @@ TEST_P(Loading, WhatWouldNotLoadIsNotSaved) {
     setka::Queue queue = device().make_queue();
     const setka::Grid sound = build(queue, small_scene());
     const auto remade = [&](setka::WorldGeometry geometry, SetkaGridHeader header) {
-        return setka::Grid(queue, std::move(geometry), header, sound.offsets(), sound.counts(), sound.references());
+        return setka::Grid(queue, std::move(geometry), header, sound.tables(queue));
     };
     SetkaGridHeader header = sound.header();
     header.reference_count -= 1;

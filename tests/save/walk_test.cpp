@@ -3,6 +3,7 @@
 // The translation comes before every file of the dialect.
 #include "device/host_platform.h"
 // The dialect.
+#include "device/grid/exchange.h"
 #include "device/grid/walk.h"
 #include "device/grid/walk_all.h"
 
@@ -12,7 +13,6 @@
 #include <iostream>
 #include <vector>
 
-#include "accel/occupancy.hpp"
 #include "accel/world_geometry.hpp"
 #include "save/file_maker.hpp"
 #include "setka/save.hpp"
@@ -24,26 +24,48 @@ namespace {
 
 using namespace save_test;
 
-/// A model's tables as walks take them, with the occupancy that follows from its offsets.
+/// A model's tables as walks take them: blocks and cells that follow from its offsets and counts.
 class WalkedTables {
   public:
-    explicit WalkedTables(const Model& model)
-        : model_(model), occupancy_(setka::occupancy_words(model.header.dims)) {
-        const sk_u32 fine = sk_coarse_start(sk_block_dims(sk_cell_dims(model.header)));
-        for (sk_u32 w = 0; w < occupancy_.size(); ++w)
-            if (w < fine) sk_occupancy_fine(w, model.header, model.offsets.data(), occupancy_.data());
-            else sk_occupancy_coarse(w - fine, model.header, occupancy_.data());
+    explicit WalkedTables(const Model& model) : model_(model) {
+        const sk_dims cell_dims = sk_cell_dims(model.header), dims = sk_block_dims(cell_dims),
+                      group_dims = sk_block_dims(dims);
+        blocks_.resize(std::size_t(dims.x) * dims.y * dims.z);
+        groups_.resize(std::size_t(group_dims.x) * group_dims.y * group_dims.z * 2);
+        references_.resize(model.references.size());
+        sk_u32 totals[SK_TOTALS] = {~0u, ~0u, ~0u, ~0u}, cells = 0, pairs = 0;
+        for (sk_u32 b = 0; b < blocks_.size(); ++b) {
+            sk_import_block(b, model.header, model.counts.data(), blocks_.data(), totals);
+            const sk_u32 of_block = blocks_[b].spare;
+            blocks_[b].first = cells;
+            blocks_[b].spare = pairs;
+            cells += sk_bit_count(sk_mask_of(blocks_[b]));
+            pairs += of_block;
+        }
+        cells_.resize(cells);
+        std::vector<sk_u32> places(cells);
+        for (sk_u32 b = 0; b < blocks_.size(); ++b)
+            sk_import_cells(b, model.header, model.offsets.data(), model.counts.data(), blocks_.data(),
+                            cells_.data(), places.data());
+        for (sk_u32 r = 0; r < cells; ++r)
+            sk_move_list(r, static_cast<sk_u32>(references_.size()), 0, cells_.data(), places.data(),
+                         model.references.data(), references_.data());
+        for (sk_u32 group = 0; group < groups_.size() / 2; ++group)
+            sk_group_blocks(group, model.header, blocks_.data(), groups_.data());
     }
 
     [[nodiscard]] sk_grid_tables get() const {
-        return sk_make_tables(occupancy_.data(), model_.offsets.data(), model_.counts.data(),
-                              model_.references.data(), model_.triangles.data(),
-                              model_.instance_starts.data(), model_.instances.data());
+        return sk_make_tables(blocks_.data(), groups_.data(), cells_.data(), references_.data(),
+                              model_.triangles.data(), model_.instance_starts.data(),
+                              model_.instances.data());
     }
 
   private:
     const Model& model_;
-    std::vector<sk_u32> occupancy_;
+    std::vector<sk_block> blocks_;
+    std::vector<sk_u32> groups_;
+    std::vector<sk_cell_list> cells_;
+    std::vector<sk_u32> references_;
 };
 
 sk_trace_params params_of(const Model& model, std::uint32_t mask) {

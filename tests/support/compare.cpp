@@ -130,9 +130,10 @@ AssertionResult same_image(const setka::Image& expected, const setka::Image& act
 oracle::Tables download(setka::Queue& queue, const setka::Grid& grid) {
     oracle::Tables tables;
     tables.header = grid.header();
-    tables.offsets = queue.download(grid.offsets());
-    tables.counts = queue.download(grid.counts());
-    tables.references = queue.download(grid.references());
+    const setka::GridTables flat = grid.tables(queue);
+    tables.offsets = queue.download(flat.offsets);
+    tables.counts = queue.download(flat.counts);
+    tables.references = queue.download(flat.references);
     return tables;
 }
 

@@ -77,6 +77,15 @@ SK_FUNCTION void sk_grid_emit(sk_u32 r, SetkaGridHeader grid, SK_GLOBAL const fl
     sk_visit_row(grid, t, j, 1, row_offsets[r], i, cells, references);
 }
 
+/** Counts the pairs of row r in their cells: the plan has to say how many cells are not empty. */
+SK_FUNCTION void sk_grid_mark(sk_u32 r, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
+                              SK_GLOBAL const sk_u32* row_triangles, SK_GLOBAL const sk_u32* row_starts,
+                              SK_GLOBAL sk_u32* counters) {
+    const sk_u32 i = row_triangles[r];
+    const sk_cell_triangle t = sk_load_cell_triangle(grid, triangles + (size_t)i * 9u);
+    sk_count_row(grid, t, sk_first_row(grid, t) + (r - row_starts[i]), counters);
+}
+
 /** Stage 7 by run boundaries, first of three: every cell is empty. */
 SK_FUNCTION void sk_grid_cells_clear(sk_u32 c, SK_GLOBAL sk_i32* offsets, SK_GLOBAL sk_u32* counts) {
     offsets[c] = -1;

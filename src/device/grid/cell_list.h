@@ -7,33 +7,44 @@
 #ifndef SETKA_DEVICE_GRID_CELL_LIST_H
 #define SETKA_DEVICE_GRID_CELL_LIST_H
 
+#include "device/grid/blocks.h"
 #include "device/trace/triangle.h"
 
 /** The tables of a grid and what its walks need of the scene. */
 typedef struct sk_grid_tables {
-    SK_GLOBAL const sk_u32* occupancy;
-    SK_GLOBAL const sk_i32* offsets;
-    SK_GLOBAL const sk_u32* counts;
+    SK_GLOBAL const sk_block* blocks;
+    SK_GLOBAL const sk_u32* groups; /* a bit a block, two words for each 4 x 4 x 4 of them */
+    SK_GLOBAL const sk_cell_list* cells;
     SK_GLOBAL const sk_u32* references;
     SK_GLOBAL const float* triangles;
     SK_GLOBAL const sk_u32* instance_starts;
     SK_GLOBAL const SetkaInstance* instances;
 } sk_grid_tables;
 
-SK_FUNCTION sk_grid_tables sk_make_tables(SK_GLOBAL const sk_u32* occupancy, SK_GLOBAL const sk_i32* offsets,
-                                          SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* references,
+SK_FUNCTION sk_grid_tables sk_make_tables(SK_GLOBAL const sk_block* blocks, SK_GLOBAL const sk_u32* groups,
+                                          SK_GLOBAL const sk_cell_list* cells, SK_GLOBAL const sk_u32* references,
                                           SK_GLOBAL const float* triangles,
                                           SK_GLOBAL const sk_u32* instance_starts,
                                           SK_GLOBAL const SetkaInstance* instances) {
     sk_grid_tables r;
-    r.occupancy = occupancy;
-    r.offsets = offsets;
-    r.counts = counts;
+    r.blocks = blocks;
+    r.groups = groups;
+    r.cells = cells;
     r.references = references;
     r.triangles = triangles;
     r.instance_starts = instance_starts;
     r.instances = instances;
     return r;
+}
+
+/** The block that holds the cell (x, y, z). */
+SK_FUNCTION sk_block sk_block_at(SetkaGridHeader grid, sk_grid_tables tables, sk_u32 x, sk_u32 y, sk_u32 z) {
+    return tables.blocks[sk_block_of(sk_block_dims(sk_cell_dims(grid)), x, y, z)];
+}
+
+/** The list of a non-empty cell. */
+SK_FUNCTION sk_cell_list sk_find_list(sk_grid_tables tables, sk_block block, sk_u32 bit) {
+    return tables.cells[block.first + sk_rank_of(block, bit)];
 }
 
 /** The best of `best` and the hit of a triangle that may be hit, unless it is `skip` or hidden. */
@@ -71,10 +82,11 @@ SK_FUNCTION sk_u32 sk_candidates(sk_working_ray ray, SK_GLOBAL const float* tria
     return count < SK_WIDTH ? r & ((1u << count) - 1u) : r;
 }
 
-/** The best of `best` and the hits in the list of `cell`, past the triangle `skip`. */
-SK_FUNCTION sk_best sk_test_cell(sk_grid_tables grid, sk_trace_params params, sk_working_ray ray, sk_u32 cell,
-                                 sk_u32 count, sk_u32 skip, sk_best best) {
-    SK_GLOBAL const sk_u32* list = grid.references + (sk_u32)grid.offsets[cell];
+/** The best of `best` and the hits in a cell's list, past the triangle `skip`. */
+SK_FUNCTION sk_best sk_test_cell(sk_grid_tables grid, sk_trace_params params, sk_working_ray ray,
+                                 sk_cell_list in, sk_u32 skip, sk_best best) {
+    SK_GLOBAL const sk_u32* list = grid.references + in.offset;
+    const sk_u32 count = in.count;
     sk_best r = best;
     for (sk_u32 first = 0u; first < count; first += SK_WIDTH) {
         sk_u32 candidates = sk_candidates(ray, grid.triangles, list + first, count - first);
@@ -90,9 +102,10 @@ SK_FUNCTION sk_best sk_test_cell(sk_grid_tables grid, sk_trace_params params, sk
  * The same. The accurate test is long and few triangles come to it, so it waits until the list is through or the next candidate
  * is there: work-items that run in step do it together.
  */
-SK_FUNCTION sk_best sk_test_cell(sk_grid_tables grid, sk_trace_params params, sk_working_ray ray, sk_u32 cell,
-                                 sk_u32 count, sk_u32 skip, sk_best best) {
-    SK_GLOBAL const sk_u32* list = grid.references + (sk_u32)grid.offsets[cell];
+SK_FUNCTION sk_best sk_test_cell(sk_grid_tables grid, sk_trace_params params, sk_working_ray ray,
+                                 sk_cell_list in, sk_u32 skip, sk_best best) {
+    SK_GLOBAL const sk_u32* list = grid.references + in.offset;
+    const sk_u32 count = in.count;
     sk_best r = best;
     sk_u32 k = 0u, candidate = SETKA_NO_HIT;
     sk_u32 ahead = count != 0u ? list[0] : 0u;

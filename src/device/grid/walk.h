@@ -10,7 +10,6 @@
 
 #include "device/grid/cells.h"
 #include "device/grid/cell_list.h"
-#include "device/grid/occupancy.h"
 
 /**
  * The distance in cells to a face that is never reached: far beyond a ray's way through the scene's box, which is a few times
@@ -100,24 +99,24 @@ SK_FUNCTION sk_place sk_enter(SetkaGridHeader grid, sk_working_ray ray, sk_span 
     return r;
 }
 
-SK_FUNCTION sk_u32 sk_cell_number(SetkaGridHeader grid, sk_place at) {
-    return (at.z.index * grid.dims[1] + at.y.index) * grid.dims[0] + at.x.index;
-}
+/** What sk_clearance says of a cell that is not empty. */
+#define SK_OCCUPIED 31u
 
 /**
  * How large an empty cube around the cell the ray may leave in one step: 2^n cells wide for the n returned, or SK_OCCUPIED if the
- * cell has a list. Only what lies ahead has to be empty.
+ * cell has a list. Only what lies ahead has to be empty. `block` is the cell's.
  */
-SK_FUNCTION sk_u32 sk_clearance(SetkaGridHeader grid, SK_GLOBAL const sk_u32* occupancy, sk_place at) {
-    const sk_dims blocks = sk_block_dims(sk_cell_dims(grid));
+SK_FUNCTION sk_u32 sk_clearance(SetkaGridHeader grid, SK_GLOBAL const sk_u32* groups, sk_block block, sk_place at) {
     const sk_u32 x = at.x.index, y = at.y.index, z = at.z.index;
-    const sk_u64 bits = sk_block_bits(occupancy, blocks, x, y, z);
+    const sk_u64 bits = sk_mask_of(block);
     sk_u32 shift = 2u;
     if (bits == 0u) {
-        const sk_u64 coarse = sk_block_bits(occupancy + sk_coarse_start(blocks), sk_block_dims(blocks), x >> 2, y >> 2, z >> 2);
+        const sk_dims dims = sk_block_dims(sk_block_dims(sk_cell_dims(grid)));
+        const sk_u32 group = 2u * sk_block_of(dims, x >> 2, y >> 2, z >> 2);
+        const sk_u64 coarse = (sk_u64)groups[group] | (sk_u64)groups[group + 1u] << 32;
         const sk_u64 ahead = sk_bits_ahead(x >> 2, y >> 2, z >> 2, at.x.forward, at.y.forward, at.z.forward);
         if ((coarse & ahead) == 0u) shift = 4u;
-    } else if ((bits >> ((z & 3u) * 16u + (y & 3u) * 4u + (x & 3u)) & 1u) != 0u) {
+    } else if (sk_has_bit(bits, sk_bit_in_block(x, y, z))) {
         shift = SK_OCCUPIED;
     } else if ((bits & sk_bits_ahead(x, y, z, at.x.forward, at.y.forward, at.z.forward)) != 0u) {
         shift = 0u;
@@ -181,17 +180,19 @@ SK_FUNCTION sk_walk sk_walk_grid(SetkaGridHeader grid, sk_trace_params params, s
     r.cost.tests = 0u;
     while (at.walking) {
         sk_u32 shift = 0u;
+        sk_block block;
         /* Work-items that run in step wait for the last one here: not for long. */
         for (sk_u32 turn = 0u; turn < SK_TURNS && at.walking && shift != SK_OCCUPIED; ++turn) {
-            shift = sk_clearance(grid, tables.occupancy, at);
+            block = sk_block_at(grid, tables, at.x.index, at.y.index, at.z.index);
+            shift = sk_clearance(grid, tables.groups, block, at);
             r.cost.steps += 1u;
             if (shift != SK_OCCUPIED) at = sk_leave(at, shift, last);
         }
         if (shift == SK_OCCUPIED) {
-            const sk_u32 cell = sk_cell_number(grid, at);
-            const sk_u32 count = tables.counts[cell];
-            r.best = sk_test_cell(tables, params, ray, cell, count, skip, r.best);
-            r.cost.tests += count;
+            const sk_cell_list list =
+                sk_find_list(tables, block, sk_bit_in_block(at.x.index, at.y.index, at.z.index));
+            r.best = sk_test_cell(tables, params, ray, list, skip, r.best);
+            r.cost.tests += list.count;
             const int found = r.best.triangle != SETKA_NO_HIT;
             if (found) last = sk_min(r.best.w, span.w1);
             at = sk_leave(at, 0u, last);
@@ -213,12 +214,13 @@ SK_FUNCTION sk_walk sk_walk_cells(SetkaGridHeader grid, sk_trace_params params, 
     r.cost.steps = 0u;
     r.cost.tests = 0u;
     while (walking) {
-        const sk_u32 cell = (z.index * grid.dims[1] + y.index) * grid.dims[0] + x.index;
+        const sk_block block = sk_block_at(grid, tables, x.index, y.index, z.index);
+        const sk_u32 bit = sk_bit_in_block(x.index, y.index, z.index);
         r.cost.steps += 1u;
-        if (tables.offsets[cell] >= 0) {
-            const sk_u32 count = tables.counts[cell];
-            r.best = sk_test_cell(tables, params, ray, cell, count, skip, r.best);
-            r.cost.tests += count;
+        if (sk_has_bit(sk_mask_of(block), bit)) {
+            const sk_cell_list list = sk_find_list(tables, block, bit);
+            r.best = sk_test_cell(tables, params, ray, list, skip, r.best);
+            r.cost.tests += list.count;
         }
         const float ex = sk_exit(x), ey = sk_exit(y), ez = sk_exit(z);
         const int found = r.best.triangle != SETKA_NO_HIT;

@@ -26,15 +26,16 @@ SK_FUNCTION sk_u32 sk_walk_grid_all(SetkaGridHeader grid, sk_trace_params params
     sk_u32 found = 0u;
     float w_in = sk_bits_float(0xff800000u); /* the first cell owns whatever is before it */
     while (walking) {
-        const sk_u32 cell = (z.index * grid.dims[1] + y.index) * grid.dims[0] + x.index;
-        const sk_i32 offset = tables.offsets[cell];
+        const sk_block block = sk_block_at(grid, tables, x.index, y.index, z.index);
+        const sk_u32 bit = sk_bit_in_block(x.index, y.index, z.index);
         const float wx = sk_exit(x) * x.inverse, wy = sk_exit(y) * y.inverse, wz = sk_exit(z) * z.inverse;
         const float w_out = sk_min(wx, sk_min(wy, wz));
         const int is_last = span.w1 <= w_out; /* and owns whatever is behind it */
-        if (offset >= 0 && (w_in < w_out || is_last)) {
-            const sk_u32 count = tables.counts[cell], before = found;
-            for (sk_u32 k = 0u; k < count; ++k) {
-                const sk_u32 number = tables.references[(sk_u32)offset + k];
+        if (sk_has_bit(sk_mask_of(block), bit) && (w_in < w_out || is_last)) {
+            const sk_cell_list list = sk_find_list(tables, block, bit);
+            const sk_u32 before = found;
+            for (sk_u32 k = 0u; k < list.count; ++k) {
+                const sk_u32 number = tables.references[list.offset + k];
                 const sk_best hit = sk_test_triangle(ray, tables.triangles + (size_t)number * 9u, 1u, number, sk_no_hit());
                 if (hit.triangle != SETKA_NO_HIT && hit.w > w_in && (hit.w <= w_out || is_last) && number != skip &&
                     sk_is_visible(params, tables.instance_starts, tables.instances, number))

@@ -19,7 +19,7 @@ SK_FUNCTION sk_interval sk_probe_clip(float pa, float qa, float pb, float qb) {
     sk_interval nothing;
     nothing.low = SK_EVERYTHING;
     nothing.high = -SK_EVERYTHING;
-    return sk_clip_edge(nothing, pa, qa, pb, qb, 0.0f, 1.0f);
+    return sk_clip_edge(nothing, pa, qa, pb, qb, (qb - qa) / (pb - pa), 0.0f, 1.0f);
 }
 
 SK_FUNCTION sk_u32 sk_probe_compare(float a, float b) {

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+/// What of a grid stays on the device, and how does it become the paper's tables? The host's side of
+/// device/grid/blocks.h: sizes, the scan over blocks, and the exchange with flat tables.
+#pragma once
+
+#include <cstdint>
+
+#include "setka/grid.hpp"
+
+namespace setka {
+
+/// Blocks of 4 x 4 x 4 cells, and groups of as many blocks.
+[[nodiscard]] std::uint32_t block_count(const ::SetkaGridHeader& header) noexcept;
+[[nodiscard]] std::uint32_t group_count(const ::SetkaGridHeader& header) noexcept;
+
+/// Words of a block, a group and a cell's record.
+inline constexpr std::uint64_t block_words = 4, group_words = 2, cell_words = 2;
+
+/// What the device tells of counted blocks.
+struct BlockTotals {
+    std::uint32_t cells = 0;         ///< that are not empty
+    std::uint64_t pairs = 0;
+    std::uint32_t longest_list = 0;  ///< 0 if none is longer than SK_LONG_LIST
+};
+
+/// Words of kernels to the host: device/grid/limits.h.
+[[nodiscard]] Buffer<std::uint32_t> make_totals(Queue& queue);
+[[nodiscard]] BlockTotals read_totals(Queue& queue, const Buffer<std::uint32_t>& totals);
+
+/// Bytes of the sums of a scan over so many blocks.
+[[nodiscard]] std::uint64_t block_sums_bytes(const Device& device, std::uint32_t blocks);
+/// Enqueues the scan of the blocks' cells and pairs, up to the totals. Hands back the sums for what follows.
+[[nodiscard]] Buffer<std::uint64_t> enqueue_block_sums(Queue& queue, const Buffer<std::uint32_t>& blocks,
+                                                       const Buffer<std::uint32_t>& totals);
+/// The rest of the scan: each block learns where its cells and lists begin.
+void enqueue_block_starts(Queue& queue, const Buffer<std::uint64_t>& sums,
+                          const Buffer<std::uint32_t>& blocks);
+
+/// The bits of all blocks.
+[[nodiscard]] Buffer<std::uint32_t> make_groups(Queue& queue, const ::SetkaGridHeader& header,
+                                                const Buffer<std::uint32_t>& blocks);
+
+/// Flat tables as compact ones; waits. Throws InvalidArgument if offsets or counts do not have one element for each cell, or
+/// if the counts do not add up to the references.
+[[nodiscard]] CompactTables import_tables(Queue& queue, const ::SetkaGridHeader& header,
+                                          const GridTables& flat);
+/// The most bytes that import_tables() holds beside the flat tables, the result included.
+[[nodiscard]] std::uint64_t import_bytes(const Device& device, const ::SetkaGridHeader& header,
+                                         std::uint32_t cells);
+
+/// Compact tables as flat ones.
+[[nodiscard]] GridTables export_tables(Queue& queue, const ::SetkaGridHeader& header,
+                                       const CompactTables& tables);
+
+}  // namespace setka
