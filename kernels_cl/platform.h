@@ -15,9 +15,18 @@
 #define SK_ALIGNED(bytes) __attribute__((aligned(bytes)))
 #define SK_BARRIER() barrier(CLK_LOCAL_MEM_FENCE)
 
-/* Given by the host: 8 for CPUs, 1 elsewhere. No result depends on it. */
+/* Given by the host: 8 and 1 for CPUs, 1 and 32 for GPUs. No result depends on them. */
 #ifndef SK_WIDTH
 #define SK_WIDTH 1u
+#endif
+#ifndef SK_TEAM
+#define SK_TEAM 1
+#endif
+
+#if SK_TEAM > 1
+#define SK_TEAM_KERNEL __kernel __attribute__((reqd_work_group_size(SK_TEAM, 1, 1)))
+#else
+#define SK_TEAM_KERNEL __kernel
 #endif
 
 typedef uint sk_u32;
@@ -35,5 +44,6 @@ typedef ulong sk_u64;
 #define sk_popcount(u) popcount(u)
 #define sk_atomic_min(p, v) atomic_min(p, v)
 #define sk_atomic_add(p, v) atomic_add(p, v)
+#define sk_atomic_or(p, v) atomic_or(p, v)
 
 #endif

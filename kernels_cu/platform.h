@@ -13,6 +13,9 @@
 #define SK_BARRIER() __syncthreads()
 
 #define SK_WIDTH 1u
+#define SK_TEAM 32
+/* 32 teams fill a multiprocessor with 64 registers for each work-item. */
+#define SK_TEAM_KERNEL extern "C" __global__ __launch_bounds__(SK_TEAM, 32)
 
 typedef unsigned int sk_u32;
 typedef int sk_i32;
@@ -29,5 +32,6 @@ typedef unsigned long long sk_u64;
 #define sk_popcount(u) ((sk_u32)__popc(u))
 #define sk_atomic_min(p, v) atomicMin(p, v)
 #define sk_atomic_add(p, v) atomicAdd(p, v)
+#define sk_atomic_or(p, v) atomicOr(p, v)
 
 #endif

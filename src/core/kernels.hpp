@@ -43,4 +43,10 @@ inline constexpr std::size_t kernel_count = sizeof(kernel_names) / sizeof(kernel
     return kernel_names[static_cast<std::size_t>(kernel)];
 }
 
+/// Kernels whose groups are teams (SK_TEAM_KERNEL in the dialect), not of the device's group size.
+[[nodiscard]] constexpr bool is_team_kernel(Kernel kernel) noexcept {
+    return kernel == Kernel::trace_grid_closest_dda || kernel == Kernel::trace_grid_any_dda ||
+           kernel == Kernel::trace_grid_cost_dda;
+}
+
 }  // namespace setka

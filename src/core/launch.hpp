@@ -18,19 +18,25 @@ void launch_groups(Queue& queue, Kernel kernel, std::uint32_t groups, std::uint3
     queue.impl().wait_if_stoppable();
 }
 
-/// Groups of the device's size for one work-item an element.
-[[nodiscard]] inline std::uint32_t group_count(const Queue& queue, std::uint32_t items) {
-    const std::uint32_t group_size = queue.device().options().work_group_size;
-    return items / group_size + (items % group_size != 0);
+/// The size of the groups in which a kernel runs that has a work-item an element: a team, or what the device's options say.
+[[nodiscard]] inline std::uint32_t group_size_of(const Queue& queue, Kernel kernel) {
+    const std::uint32_t team = is_team_kernel(kernel) ? queue.device().impl()->team_size() : 1;
+    return team > 1 ? team : queue.device().options().work_group_size;
 }
 
-/// Launches one work-item for each of `items` elements, in groups of the device's size; none if there is no element. The
-/// kernel's first argument is `items` (a u32), so that it can ignore the last group's surplus.
+/// Launches groups enough for one work-item for each of `items` elements.
+template <typename... Ts>
+void launch_enough(Queue& queue, Kernel kernel, std::uint32_t items, const Ts&... arguments) {
+    const std::uint32_t group_size = group_size_of(queue, kernel);
+    launch_groups(queue, kernel, items / group_size + (items % group_size != 0), group_size, arguments...);
+}
+
+/// Launches one work-item for each of `items` elements; none if there is no element. The kernel's first argument is `items` (a
+/// u32), so that it can ignore the last group's surplus.
 template <typename... Ts>
 void launch_items(Queue& queue, Kernel kernel, std::uint32_t items, const Ts&... arguments) {
     if (items == 0) return;
-    launch_groups(queue, kernel, group_count(queue, items), queue.device().options().work_group_size, items,
-                  arguments...);
+    launch_enough(queue, kernel, items, items, arguments...);
 }
 
 /// The same for a kernel that takes a second number, the first element (`n, first, …`), and does elements first to n - 1. Where a
@@ -40,8 +46,7 @@ void launch_range(Queue& queue, Kernel kernel, std::uint32_t items, std::uint64_
     const std::uint64_t step = queue.impl().stop_token().stop_possible() ? std::max<std::uint64_t>(most, 1) : items;
     for (std::uint64_t first = 0; first < items; first += step) {
         const std::uint64_t end = std::min<std::uint64_t>(items, first + step);
-        launch_groups(queue, kernel, group_count(queue, static_cast<std::uint32_t>(end - first)),
-                      queue.device().options().work_group_size, static_cast<std::uint32_t>(end),
+        launch_enough(queue, kernel, static_cast<std::uint32_t>(end - first), static_cast<std::uint32_t>(end),
                       static_cast<std::uint32_t>(first), arguments...);
     }
 }

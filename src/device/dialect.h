@@ -5,19 +5,22 @@
  * of a platform that lacks one.
  *
  *   SK_KERNEL                a kernel entry point returning void
+ *   SK_TEAM_KERNEL           the same, launched in groups of SK_TEAM work-items if that is more than 1
  *   SK_FUNCTION              a helper function, always inlined
  *   SK_GLOBAL, SK_LOCAL      before the type of a pointer to global or local memory
  *   SK_LOCAL_STORAGE         before an array in local memory, at the top of a kernel entry only
  *   SK_RESTRICT              on a pointer that nothing else aliases
  *   SK_ALIGNED(bytes)        before the name of a struct whose members are loaded at once
  *   SK_WIDTH                 how many equal calculations a work-item does best side by side: 1 where work-items run in step
+ *   SK_TEAM                  how many work-items run in step: 1, or a power of two up to 64 (an integer for #if)
  *   SK_BARRIER()             all work-items of the group; orders local memory; in uniform control flow only
  *   sk_u32 sk_i32 sk_u64     integers
  *   sk_global_id() sk_local_id() sk_group_id() sk_local_size()   as sk_u32
  *   sk_float_bits(f) sk_bits_float(u)                            bit casts
  *   sk_sqrt(f) sk_floor(f)                                       correctly rounded
  *   sk_popcount(u)                                               how many bits of a sk_u32 are set
- *   sk_atomic_min(p, v) sk_atomic_add(p, v)                      on global sk_u32, return what was there; order-free uses only
+ *   sk_atomic_min(p, v) sk_atomic_add(p, v) sk_atomic_or(p, v)   on sk_u32 in global or local memory, return what was there;
+ *                                                                order-free uses only
  *
  * Not allowed: fma, mad, min, max, clamp, rsqrt, dot, cross, normalize, pow, exp, log, sin, float3, doubles, sub-groups,
  * float atomics, recursion, `return` before a barrier, a float to integer cast of a value that was not range-checked.
@@ -25,7 +28,7 @@
 #ifndef SETKA_DEVICE_DIALECT_H
 #define SETKA_DEVICE_DIALECT_H
 
-#if !defined(SK_KERNEL) || !defined(SK_FUNCTION) || !defined(SK_GLOBAL) || !defined(SK_LOCAL) || \
+#if !defined(SK_KERNEL) || !defined(SK_TEAM_KERNEL) || !defined(SK_TEAM) || !defined(SK_FUNCTION) || !defined(SK_GLOBAL) || !defined(SK_LOCAL) || \
     !defined(SK_LOCAL_STORAGE) || !defined(SK_RESTRICT) || !defined(SK_BARRIER) || !defined(SK_WIDTH) || !defined(SK_ALIGNED)
 #error "include a platform.h before dialect.h"
 #endif

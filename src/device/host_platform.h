@@ -19,6 +19,7 @@
 static_assert(FLT_EVAL_METHOD == 0, "float expressions must be rounded to float after each operation");
 
 #define SK_KERNEL static inline
+#define SK_TEAM_KERNEL static inline
 #define SK_FUNCTION static inline
 #define SK_GLOBAL
 #define SK_LOCAL
@@ -30,6 +31,7 @@ static_assert(FLT_EVAL_METHOD == 0, "float expressions must be rounded to float 
 #ifndef SK_WIDTH
 #define SK_WIDTH 1u
 #endif
+#define SK_TEAM 1
 
 typedef std::uint32_t sk_u32;
 typedef std::int32_t sk_i32;
@@ -55,6 +57,11 @@ static inline sk_u32 sk_atomic_min(sk_u32* target, sk_u32 value) {
 static inline sk_u32 sk_atomic_add(sk_u32* target, sk_u32 value) {
     const sk_u32 before = *target;
     *target = before + value;
+    return before;
+}
+static inline sk_u32 sk_atomic_or(sk_u32* target, sk_u32 value) {
+    const sk_u32 before = *target;
+    *target = before | value;
     return before;
 }
 

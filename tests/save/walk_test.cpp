@@ -85,8 +85,11 @@ void walk(const Model& model, std::span<const setka::Ray> rays) {
         for (const setka::Ray& ray : rays)
             for (const auto step : {setka::GridStep::Dda, setka::GridStep::BranchFree}) {
                 const sk_working_ray working = sk_prepare_ray(params, ray);
-                const auto rule = step == setka::GridStep::Dda ? sk_walk_grid : sk_walk_cells;
-                const sk_walk walk = rule(model.header, params, working, tables.get(), SETKA_NO_HIT, 0);
+                sk_team team{};
+                const sk_walk walk =
+                    step == setka::GridStep::Dda
+                        ? sk_walk_grid(&team, 0, model.header, params, working, tables.get(), SETKA_NO_HIT, 0)
+                        : sk_walk_cells(model.header, params, working, tables.get(), SETKA_NO_HIT, 0);
                 const SetkaHit hit = sk_make_hit(params, working, model.instance_starts.data(), walk.best);
                 ASSERT_LE(walk.cost.steps,
                           model.header.dims[0] + model.header.dims[1] + model.header.dims[2]);

@@ -20,6 +20,7 @@ DeviceCapabilities CudaDevice::capabilities() const {
     // A kernel that uses many registers allows smaller groups.
     capabilities.kernel_work_group_size = info_.max_work_group_size;
     for (std::size_t i = 0; i < kernel_count; ++i) {
+        if (is_team_kernel(static_cast<Kernel>(i))) continue;
         cudaFuncAttributes attributes{};
         check(cudaFuncGetAttributes(&attributes, cuda_kernel(static_cast<Kernel>(i))),
               std::string("asking for the limits of ") + kernel_names[i]);

@@ -27,6 +27,8 @@ class CudaDevice final : public Device {
     [[nodiscard]] const DeviceOptions& options() const noexcept override { return options_; }
     [[nodiscard]] std::shared_ptr<Queue> make_queue() override;
     void trim() override { pools_.clear(); }
+    /// As kernels_cu/platform.h says: a warp.
+    [[nodiscard]] std::uint32_t team_size() const noexcept override { return 32; }
 
     [[nodiscard]] int number() const noexcept { return number_; }
 

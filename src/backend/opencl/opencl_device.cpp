@@ -77,6 +77,7 @@ void OpenClDevice::build_program() {
     if (info_.correctly_rounded_divide_sqrt) build_options += " -cl-fp32-correctly-rounded-divide-sqrt";
     // Eight floats fill a register of AVX, two of SSE or Neon.
     if (info_.type == DeviceType::Cpu) build_options += " -DSK_WIDTH=8u";
+    build_options += " -DSK_TEAM=" + std::to_string(team_size());
     // As for CUDA: walks wait for memory, so that more of them at a time are worth more than registers.
     if (device_.getInfo<CL_DEVICE_EXTENSIONS>().find("cl_nv_compiler_options") != std::string::npos)
         build_options += " -cl-nv-maxrregcount=64";
@@ -106,9 +107,10 @@ DeviceCapabilities OpenClDevice::capabilities() const {
     // Drivers may allow a kernel less than the device's maximum.
     capabilities.kernel_work_group_size = info_.max_work_group_size;
     guarded("asking for the kernels' limits", [&] {
-        for (const char* name : kernel_names) {
+        for (std::size_t i = 0; i < kernel_count; ++i) {
+            if (is_team_kernel(static_cast<Kernel>(i))) continue;
             const cl::size_type limit =
-                cl::Kernel(program_, name).getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device_);
+                cl::Kernel(program_, kernel_names[i]).getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device_);
             capabilities.kernel_work_group_size = static_cast<std::uint32_t>(
                 std::min<cl::size_type>(capabilities.kernel_work_group_size, limit));
         }

@@ -64,7 +64,9 @@ SK_FUNCTION sk_dims sk_cell_of_bit(sk_dims blocks, sk_u32 b, sk_u32 bit) {
 SK_FUNCTION int sk_is_inside(sk_dims dims, sk_dims at) { return at.x < dims.x && at.y < dims.y && at.z < dims.z; }
 
 SK_FUNCTION sk_u64 sk_mask_of(sk_block block) { return (sk_u64)block.mask_low | (sk_u64)block.mask_high << 32; }
-SK_FUNCTION sk_u32 sk_has_bit(sk_u64 mask, sk_u32 bit) { return (sk_u32)(mask >> bit) & 1u; }
+SK_FUNCTION sk_u32 sk_has_bit(sk_block block, sk_u32 bit) {
+    return (bit < 32u ? block.mask_low : block.mask_high) >> (bit & 31u) & 1u;
+}
 SK_FUNCTION sk_u32 sk_bit_count(sk_u64 mask) { return sk_popcount((sk_u32)mask) + sk_popcount((sk_u32)(mask >> 32)); }
 
 /** How many cells before this one the block has a record for. */
@@ -86,15 +88,6 @@ SK_FUNCTION void sk_group_blocks(sk_u32 group, SetkaGridHeader grid, SK_GLOBAL c
     }
     groups[2u * group] = (sk_u32)mask;
     groups[2u * group + 1u] = (sk_u32)(mask >> 32);
-}
-
-/** The bits of a block from (x, y, z) on, in the directions given: where a ray that is there may still go. */
-SK_FUNCTION sk_u64 sk_bits_ahead(sk_u32 x, sk_u32 y, sk_u32 z, int forward_x, int forward_y, int forward_z) {
-    const sk_u32 ix = x & 3u, iy = (y & 3u) * 4u, iz = (z & 3u) * 16u;
-    const sk_u32 along_x = (forward_x ? 15u << ix & 15u : 15u >> (3u - ix)) * 0x11111111u;
-    const sk_u32 along_y = (forward_y ? 0xffffu << iy & 0xffffu : 0xffffu >> (12u - iy)) * 0x00010001u;
-    const sk_u64 everywhere = ~(sk_u64)0, layer = (sk_u64)(along_x & along_y);
-    return (layer | layer << 32) & (forward_z ? everywhere << iz : everywhere >> (48u - iz));
 }
 
 #endif

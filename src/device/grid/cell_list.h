@@ -50,7 +50,7 @@ SK_FUNCTION sk_cell_list sk_find_list(sk_grid_tables tables, sk_block block, sk_
 /** The best of `best` and the hit of a triangle that may be hit, unless it is `skip` or hidden. */
 SK_FUNCTION sk_best sk_test_candidate(sk_grid_tables grid, sk_trace_params params, sk_working_ray ray, sk_u32 number,
                                       sk_u32 skip, sk_best best) {
-    const sk_best hit = sk_test_triangle(ray, grid.triangles + (size_t)number * 9u, 1u, number, best);
+    const sk_best hit = sk_test_triangle(ray, grid.triangles, number * 9u, 1u, number, best);
     const int counts = hit.triangle != best.triangle && number != skip &&
                        sk_is_visible(params, grid.instance_starts, grid.instances, number);
     return counts ? hit : best;
@@ -115,7 +115,7 @@ SK_FUNCTION sk_best sk_test_cell(sk_grid_tables grid, sk_trace_params params, sk
             const sk_u32 number = ahead;
             k += 1u;
             if (k < count) ahead = list[k]; /* on its way while this triangle is tested */
-            if (sk_may_hit(ray, grid.triangles + (size_t)number * 9u, 1u)) {
+            if (sk_may_pass(sk_view_triangle(sk_viewpoint_of(ray), grid.triangles, number * 9u, 1u))) {
                 if (candidate == SETKA_NO_HIT)
                     candidate = number;
                 else

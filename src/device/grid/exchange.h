@@ -45,7 +45,7 @@ SK_FUNCTION void sk_import_cells(sk_u32 b, SetkaGridHeader grid, SK_GLOBAL const
     sk_cell_list list;
     list.offset = block.spare;
     for (sk_u32 bit = 0u; bit < SK_BLOCK_CELLS; ++bit)
-        if (sk_has_bit(sk_mask_of(block), bit)) {
+        if (sk_has_bit(block, bit)) {
             const sk_dims at = sk_cell_of_bit(dims, b, bit);
             const sk_u32 cell = sk_number_at(cell_dims, at.x, at.y, at.z);
             list.count = counts[cell];
@@ -67,7 +67,7 @@ SK_FUNCTION void sk_export_counts(sk_u32 b, SetkaGridHeader grid, SK_GLOBAL cons
     for (sk_u32 bit = 0u; bit < SK_BLOCK_CELLS; ++bit) {
         const sk_dims at = sk_cell_of_bit(dims, b, bit);
         if (sk_is_inside(cell_dims, at)) {
-            const sk_u32 is_listed = sk_has_bit(sk_mask_of(block), bit);
+            const sk_u32 is_listed = sk_has_bit(block, bit);
             counts[sk_number_at(cell_dims, at.x, at.y, at.z)] = is_listed ? cells[r].count : 0u;
             r += is_listed;
         }
@@ -85,7 +85,7 @@ SK_FUNCTION void sk_export_offsets(sk_u32 b, SetkaGridHeader grid, SK_GLOBAL con
         const sk_dims at = sk_cell_of_bit(dims, b, bit);
         if (sk_is_inside(cell_dims, at)) {
             const sk_u32 cell = sk_number_at(cell_dims, at.x, at.y, at.z);
-            const sk_u32 is_listed = sk_has_bit(sk_mask_of(block), bit);
+            const sk_u32 is_listed = sk_has_bit(block, bit);
             offsets[cell] = is_listed ? (sk_i32)starts[cell] : -1;
             if (is_listed) places[r] = starts[cell];
             r += is_listed;

@@ -19,7 +19,7 @@
 /** What turns SK_NEVER into a parameter beyond any other for an axis that the ray is parallel to. */
 #define SK_PARALLEL_INVERSE 0x1p90f
 
-/** The most moves that a walk makes before it looks whether others of its group have a list to test. */
+/** The most moves that a walk makes before it looks whether others of its team have a list to test. */
 #define SK_TURNS 4u
 
 typedef struct sk_walk {
@@ -28,49 +28,53 @@ typedef struct sk_walk {
 } sk_walk;
 
 /**
- * One axis of the walk: o + w * d in cells. `exit` is the way to the face through which the ray leaves cell `index`, measured from the
- * origin and so without accumulated error. Outermost cells reach on forever: what lies in the scene's padded box but
- * outside the grid belongs to them.
+ * One axis of the walk: origin + w * speed in cells, mirrored so that every ray moves down: `index` ^ `flip` is the cell's. The
+ * cell `last` is the last one on the axis, and reaches on forever: what lies in the scene's padded box but outside the grid belongs
+ * to it. A ray that is parallel to the axis is there from the start.
  */
 typedef struct sk_axis {
     float origin;
-    float speed;    /* |d|, 0 if parallel */
-    float inverse;  /* 1 / |d|, huge if parallel */
-    int forward;
-    sk_u32 dim, index;
+    float speed;   /* |d|, 0 if parallel */
+    float inverse; /* 1 / |d|, huge if parallel */
+    sk_i32 index, last;
+    sk_i32 flip;   /* -1 for rays that go up: ~i goes down; else 0 */
 } sk_axis;
 
-SK_FUNCTION sk_axis sk_make_axis(float origin, float direction, float working_direction, float start, sk_u32 dim) {
+/** `inverse` is 1 / working_direction. */
+SK_FUNCTION sk_axis sk_make_axis(SetkaGridHeader grid, float origin, float direction, float working_direction,
+                                 float inverse, float start, sk_u32 dim) {
     sk_axis r;
-    const int parallel = working_direction == 0.0f;
-    r.origin = origin;
+    const int parallel = working_direction == 0.0f, up = direction >= 0.0f;
     r.speed = parallel ? 0.0f : sk_abs(direction);
-    r.inverse = parallel ? SK_PARALLEL_INVERSE : 1.0f / r.speed;
-    r.forward = direction >= 0.0f;
-    r.dim = dim;
-    r.index = sk_cell(origin + direction * start, dim);
+    r.inverse = parallel ? SK_PARALLEL_INVERSE : sk_abs(inverse) * grid.cell_size;
+    r.flip = up ? -1 : 0;
+    r.origin = up ? -origin : origin;
+    r.index = (sk_i32)sk_cell(origin + direction * start, dim) ^ r.flip;
+    r.last = parallel ? r.index : up ? ~(sk_i32)(dim - 1u) : 0;
     return r;
 }
 
-/** The way to the face through which the ray leaves the cube of 2^shift cells around its cell. */
-SK_FUNCTION float sk_exit_of(sk_axis a, sk_u32 shift) {
-    const sk_u32 low = a.index >> shift << shift, high = low + (1u << shift);
-    const float face = a.forward ? (float)high - a.origin : a.origin - (float)low;
-    const int outermost = a.forward ? high >= a.dim : low == 0u;
-    return outermost || a.speed == 0.0f ? SK_NEVER : face;
+/** The number of the cell on its axis, in the grid's order. */
+SK_FUNCTION sk_u32 sk_cell_index(sk_axis a) { return (sk_u32)(a.index ^ a.flip); }
+
+/**
+ * The way in cells to the face through which the ray leaves an aligned cube of cells around its cell, from the origin on and so without
+ * accumulated error. `cube` is the cube's width in cells less one: 0, 3 or 15.
+ */
+SK_FUNCTION float sk_exit_of(sk_axis a, sk_i32 cube) {
+    const sk_i32 low = a.index & ~cube;
+    return low <= a.last ? SK_NEVER : a.origin - (float)low;
 }
 
-SK_FUNCTION float sk_exit(sk_axis a) { return sk_exit_of(a, 0u); }
+SK_FUNCTION float sk_exit(sk_axis a) { return sk_exit_of(a, 0); }
 
 /** The paper's S: 1 for negative numbers, else 0. */
-SK_FUNCTION sk_u32 sk_negative(float f) { return (sk_u32)(f < 0.0f); }
-
-SK_FUNCTION sk_u32 sk_advance(sk_axis a, sk_u32 steps) { return a.forward ? a.index + steps : a.index - steps; }
+SK_FUNCTION sk_i32 sk_negative(float f) { return (sk_i32)(f < 0.0f); }
 
 /** The working interval that the user's tmin and tmax leave, widened by what rounding may take. */
 SK_FUNCTION sk_span sk_limit(sk_working_ray ray) {
     sk_span r;
-    const float to_w = 1.0f / ray.scale, pre = 1.0f / ray.pre;
+    const float to_w = sk_inverse_power(ray.scale), pre = sk_inverse_power(ray.pre);
     const float a = (ray.tmin * to_w) * pre, b = (ray.tmax * to_w) * pre;
     /* Where t is subnormal its rounding is absolute; in working parameters that may be much. */
     const float step = 0x1p-148f * pre, coarse = step + step * to_w;
@@ -92,113 +96,207 @@ typedef struct sk_place {
 SK_FUNCTION sk_place sk_enter(SetkaGridHeader grid, sk_working_ray ray, sk_span span) {
     const sk_vec3 o = sk_to_cells(grid, ray.o), d = sk_scale(ray.d, grid.inverse_cell_size);
     sk_place r;
-    r.x = sk_make_axis(o.x, d.x, ray.d.x, span.w0, grid.dims[0]);
-    r.y = sk_make_axis(o.y, d.y, ray.d.y, span.w0, grid.dims[1]);
-    r.z = sk_make_axis(o.z, d.z, ray.d.z, span.w0, grid.dims[2]);
+    r.x = sk_make_axis(grid, o.x, d.x, ray.d.x, ray.inverse.x, span.w0, grid.dims[0]);
+    r.y = sk_make_axis(grid, o.y, d.y, ray.d.y, ray.inverse.y, span.w0, grid.dims[1]);
+    r.z = sk_make_axis(grid, o.z, d.z, ray.d.z, ray.inverse.z, span.w0, grid.dims[2]);
     r.walking = span.meets;
     return r;
 }
 
-/** What sk_clearance says of a cell that is not empty. */
-#define SK_OCCUPIED 31u
-
 /**
- * How large an empty cube around the cell the ray may leave in one step: 2^n cells wide for the n returned, or SK_OCCUPIED if the
- * cell has a list. Only what lies ahead has to be empty. `block` is the cell's.
+ * The index on an axis at which the ray is at w, when it leaves a cube through a face of another axis: in the cube, and never behind the
+ * index that it has, whatever rounding says.
  */
-SK_FUNCTION sk_u32 sk_clearance(SetkaGridHeader grid, SK_GLOBAL const sk_u32* groups, sk_block block, sk_place at) {
-    const sk_u32 x = at.x.index, y = at.y.index, z = at.z.index;
-    const sk_u64 bits = sk_mask_of(block);
-    sk_u32 shift = 2u;
-    if (bits == 0u) {
-        const sk_dims dims = sk_block_dims(sk_block_dims(sk_cell_dims(grid)));
-        const sk_u32 group = 2u * sk_block_of(dims, x >> 2, y >> 2, z >> 2);
-        const sk_u64 coarse = (sk_u64)groups[group] | (sk_u64)groups[group + 1u] << 32;
-        const sk_u64 ahead = sk_bits_ahead(x >> 2, y >> 2, z >> 2, at.x.forward, at.y.forward, at.z.forward);
-        if ((coarse & ahead) == 0u) shift = 4u;
-    } else if (sk_has_bit(bits, sk_bit_in_block(x, y, z))) {
-        shift = SK_OCCUPIED;
-    } else if ((bits & sk_bits_ahead(x, y, z, at.x.forward, at.y.forward, at.z.forward)) != 0u) {
-        shift = 0u;
-    }
-    return shift;
+SK_FUNCTION sk_i32 sk_land(sk_axis a, sk_i32 cube, float w) {
+    const sk_i32 low = a.index & ~cube, end = low > a.last ? low : a.last;
+    const float at = a.origin - w * a.speed;
+    return !(at < (float)a.index) ? a.index : at > (float)end ? (sk_i32)sk_floor(at) : end;
 }
 
-/**
- * The index on an axis at which the ray is at w, when it leaves a cube of 2^shift cells through a face of another axis: in the cube, and
- * never behind the index that it has, whatever rounding says.
- */
-SK_FUNCTION sk_u32 sk_land(sk_axis a, sk_u32 shift, float w) {
-    const sk_u32 low = a.index >> shift << shift, high = low + (1u << shift) - 1u;
-    const float way = w * a.speed;
-    const sk_u32 cell = sk_cell(a.forward ? a.origin + way : a.origin - way, a.dim);
-    return a.forward ? sk_min_u32(sk_max_u32(cell, a.index), sk_min_u32(high, a.dim - 1u))
-                     : sk_max_u32(sk_min_u32(cell, a.index), low);
-}
-
-/** The index behind the face through which the ray leaves the cube. */
-SK_FUNCTION sk_u32 sk_pass(sk_axis a, sk_u32 shift) {
-    const sk_u32 low = a.index >> shift << shift;
-    return a.forward ? low + (1u << shift) : low - 1u;
-}
-
-/** Leaves the cube of 2^shift cells around the ray's cell, unless nothing of interest is beyond it. */
-SK_FUNCTION sk_place sk_leave(sk_place at, sk_u32 shift, float last) {
-    const float wx = sk_exit_of(at.x, shift) * at.x.inverse;
-    const float wy = sk_exit_of(at.y, shift) * at.y.inverse;
-    const float wz = sk_exit_of(at.z, shift) * at.z.inverse;
+/** Leaves the cube around the ray's cell, unless nothing of interest is beyond it. */
+SK_FUNCTION sk_place sk_leave(sk_place at, sk_i32 cube, float last) {
+    const float wx = sk_exit_of(at.x, cube) * at.x.inverse;
+    const float wy = sk_exit_of(at.y, cube) * at.y.inverse;
+    const float wz = sk_exit_of(at.z, cube) * at.z.inverse;
     const int through_x = wx <= wy && wx <= wz, through_y = !through_x && wy <= wz;
     const float w = through_x ? wx : through_y ? wy : wz;
     sk_place r = at;
     if (last <= w) {
         r.walking = 0;
-    } else if (shift == 0u) {
-        r.x.index = sk_advance(at.x, (sk_u32)through_x);
-        r.y.index = sk_advance(at.y, (sk_u32)through_y);
-        r.z.index = sk_advance(at.z, (sk_u32)(!through_x && !through_y));
+    } else if (cube == 0) {
+        r.x.index -= through_x;
+        r.y.index -= through_y;
+        r.z.index -= !through_x && !through_y;
     } else {
-        r.x.index = through_x ? sk_pass(at.x, shift) : sk_land(at.x, shift, w);
-        r.y.index = through_y ? sk_pass(at.y, shift) : sk_land(at.y, shift, w);
-        r.z.index = through_x || through_y ? sk_land(at.z, shift, w) : sk_pass(at.z, shift);
+        r.x.index = through_x ? (at.x.index & ~cube) - 1 : sk_land(at.x, cube, w);
+        r.y.index = through_y ? (at.y.index & ~cube) - 1 : sk_land(at.y, cube, w);
+        r.z.index = through_x || through_y ? sk_land(at.z, cube, w) : (at.z.index & ~cube) - 1;
     }
     return r;
 }
 
+/** A walk that looks for lists. */
+typedef struct sk_search {
+    sk_place at;
+    sk_i32 cube;       /* to leave next; SK_ENTERED: the ray has only just come in */
+    sk_cell_list list; /* of the cell that the ray is in */
+} sk_search;
+
+#define SK_ENTERED (-1)
+
+/** Goes on to the next place. The list is empty there unless it is a cell that has one. */
+SK_FUNCTION sk_search sk_move_on(SetkaGridHeader grid, sk_grid_tables tables, sk_search search, float last) {
+    sk_search r = search;
+    r.list.offset = 0u;
+    r.list.count = 0u;
+    if (search.cube != SK_ENTERED) r.at = sk_leave(search.at, search.cube, last);
+    if (r.at.walking) {
+        const sk_u32 x = sk_cell_index(r.at.x), y = sk_cell_index(r.at.y), z = sk_cell_index(r.at.z);
+        const sk_dims blocks = sk_block_dims(sk_cell_dims(grid));
+        const sk_block block = tables.blocks[sk_block_of(blocks, x, y, z)];
+        if ((block.mask_low | block.mask_high) == 0u) {
+            const sk_u32 group = 2u * sk_block_of(sk_block_dims(blocks), x >> 2, y >> 2, z >> 2);
+            r.cube = (tables.groups[group] | tables.groups[group + 1u]) == 0u ? 15 : 3;
+        } else {
+            const sk_u32 bit = sk_bit_in_block(x, y, z);
+            r.cube = 0;
+            if (sk_has_bit(block, bit)) r.list = sk_find_list(tables, block, bit);
+        }
+    }
+    return r;
+}
+
+#if SK_TEAM > 1
+#define SK_SHARED SK_LOCAL
+#define SK_SHARED_STORAGE SK_LOCAL_STORAGE
+#define SK_TEAM_BARRIER() SK_BARRIER()
+#define sk_team_add(target, value) sk_atomic_add(target, value)
+#define sk_team_or(target, value) sk_atomic_or(target, value)
+#else
+#define SK_SHARED
+#define SK_SHARED_STORAGE
+#define SK_TEAM_BARRIER() ((void)0)
+#define sk_team_add(target, value) ((*(target) += (value)) - (value))
+#define sk_team_or(target, value) (*(target) |= (value))
+#endif
+
+/** The most triangles of a list that are tested in one round: one bit each. */
+#define SK_ROUND 32u
+/** Added to a round's total by who walks on without a list, and by who has one, besides its triangles. */
+#define SK_WITHOUT_LIST (1u << 24)
+#define SK_WITH_LIST (1u << 16)
+#define SK_PAIRS_OF(total) ((total) & 0xffffu)
+#define SK_LISTS_OF(total) ((total) >> 16 & 0xffu)
+
+/** A part of a list in the round's row of pairs (ray, triangle): pair p is triangle references[shift + p]. */
+typedef struct SK_ALIGNED(8) sk_part {
+    sk_u32 shift;
+    sk_u32 first_and_owner; /* its first pair and, in the lowest 6 bits, the member whose ray it is */
+} sk_part;
+
 /**
- * Walks the grid, past empty space in large steps and past the triangle `skip`. `any`, a compile-time choice of the entry, stops at the
- * first hit. The walk ends: each turn at least one index moves towards its last value, where its exit is out of reach,
- * and none moves back.
+ * What the members of a team share: SK_TEAM work-items that run in step. Each walks with a ray of its own, but the triangles of
+ * all their lists are tested by all of them, one pair of ray and triangle each, since lists differ in length and most members would wait
+ * for the one with the longest. Totals and firsts are there twice, for this round and for the next.
  */
-SK_FUNCTION sk_walk sk_walk_grid(SetkaGridHeader grid, sk_trace_params params, sk_working_ray ray,
-                                 sk_grid_tables tables, sk_u32 skip, const int any) {
+typedef struct sk_team {
+    sk_viewpoint views[SK_TEAM];
+    sk_part parts[SK_TEAM];
+    sk_u32 firsts[2][SK_TEAM];   /* of the parts, ascending; SK_NO_PART behind them */
+    sk_u32 candidates[SK_TEAM];  /* bit k: the member's ray may hit triangle k of its part */
+    sk_u32 totals[2];
+} sk_team;
+
+#define SK_NO_PART 0xffffffffu
+
+/** The part of the round that pair p is in. */
+SK_FUNCTION sk_u32 sk_part_of(SK_SHARED const sk_u32* firsts, sk_u32 p) {
+    sk_u32 r = 0u;
+    for (sk_u32 step = SK_TEAM / 2u; step != 0u; step /= 2u)
+        if (firsts[r + step] <= p) r += step;
+    return r;
+}
+
+/** Puts `count` triangles of a list into the round's row, or says only that the member walks on. */
+SK_FUNCTION void sk_offer(SK_SHARED sk_team* team, sk_u32 phase, sk_u32 member, sk_u32 offset, sk_u32 count) {
+    const sk_u32 before = sk_team_add(&team->totals[phase], count == 0u ? SK_WITHOUT_LIST : SK_WITH_LIST + count);
+    if (count != 0u) {
+        const sk_u32 part = SK_LISTS_OF(before), first = SK_PAIRS_OF(before);
+        team->firsts[phase][part] = first;
+        team->parts[part].shift = offset - first;
+        team->parts[part].first_and_owner = first << 6 | member;
+    }
+}
+
+/** Tests pair p of the round. */
+SK_FUNCTION void sk_test_pair(SK_SHARED sk_team* team, sk_u32 phase, sk_grid_tables tables, sk_u32 p) {
+    const sk_part part = team->parts[sk_part_of(team->firsts[phase], p)];
+    const sk_u32 owner = part.first_and_owner & 63u, k = p - (part.first_and_owner >> 6);
+    const sk_u32 number = tables.references[part.shift + p];
+    if (sk_may_pass(sk_view_triangle(team->views[owner], tables.triangles, number * 9u, 1u)))
+        sk_team_or(&team->candidates[owner], 1u << k);
+}
+
+/**
+ * Walks the grid as member `member` of a team, past empty space in large steps and past the triangle `skip`. `any`, a compile-time
+ * choice of the entry, stops at the first hit. All members have to come here; those without a ray say so in ray.valid. The walk
+ * ends: each turn at least one index moves towards its last value, where its exit is out of reach, and none moves back.
+ */
+SK_FUNCTION sk_walk sk_walk_grid(SK_SHARED sk_team* team, sk_u32 member, SetkaGridHeader grid, sk_trace_params params,
+                                 sk_working_ray ray, sk_grid_tables tables, sk_u32 skip, const int any) {
     const sk_span span = sk_limit(ray);
-    sk_place at = sk_enter(grid, ray, span);
     float last = span.w1; /* nothing beyond this parameter is of interest */
+    sk_u32 phase = 0u, total;
+    sk_search search;
     sk_walk r;
+    search.at = sk_enter(grid, ray, span);
+    search.cube = SK_ENTERED;
+    search.list.offset = 0u;
+    search.list.count = 0u;
     r.best = sk_no_hit();
     r.cost.steps = 0u;
     r.cost.tests = 0u;
-    while (at.walking) {
-        sk_u32 shift = 0u;
-        sk_block block;
-        /* Work-items that run in step wait for the last one here: not for long. */
-        for (sk_u32 turn = 0u; turn < SK_TURNS && at.walking && shift != SK_OCCUPIED; ++turn) {
-            block = sk_block_at(grid, tables, at.x.index, at.y.index, at.z.index);
-            shift = sk_clearance(grid, tables.groups, block, at);
-            r.cost.steps += 1u;
-            if (shift != SK_OCCUPIED) at = sk_leave(at, shift, last);
-        }
-        if (shift == SK_OCCUPIED) {
-            const sk_cell_list list =
-                sk_find_list(tables, block, sk_bit_in_block(at.x.index, at.y.index, at.z.index));
-            r.best = sk_test_cell(tables, params, ray, list, skip, r.best);
-            r.cost.tests += list.count;
-            const int found = r.best.triangle != SETKA_NO_HIT;
-            if (found) last = sk_min(r.best.w, span.w1);
-            at = sk_leave(at, 0u, last);
-            if (any && found) at.walking = 0;
-        }
+    team->views[member] = sk_viewpoint_of(ray);
+    team->firsts[0][member] = SK_NO_PART;
+    team->firsts[1][member] = SK_NO_PART;
+    if (member == 0u) {
+        team->totals[0] = 0u;
+        team->totals[1] = 0u;
     }
+    SK_TEAM_BARRIER();
+    do {
+        if (search.list.count == 0u) {
+            for (sk_u32 turn = 0u; turn < SK_TURNS && search.at.walking && search.list.count == 0u; ++turn) {
+                search = sk_move_on(grid, tables, search, last);
+                r.cost.steps += (sk_u32)search.at.walking;
+            }
+            r.cost.tests += search.list.count;
+        }
+        const sk_u32 count = sk_min_u32(search.list.count, SK_ROUND);
+        if (search.at.walking) sk_offer(team, phase, member, search.list.offset, count);
+        team->candidates[member] = 0u;
+        SK_TEAM_BARRIER();
+        total = team->totals[phase];
+        if (member == 0u) team->totals[phase ^ 1u] = 0u;
+        team->firsts[phase ^ 1u][member] = SK_NO_PART;
+        for (sk_u32 p = member; p < SK_PAIRS_OF(total); p += SK_TEAM) sk_test_pair(team, phase, tables, p);
+        SK_TEAM_BARRIER();
+        /* The accurate test is long and few triangles come to it: each member does its own, the first of all of them together. */
+        for (sk_u32 candidates = team->candidates[member]; candidates != 0u; candidates &= candidates - 1u) {
+            const sk_u32 k = sk_popcount((candidates - 1u) & ~candidates);
+            r.best = sk_test_candidate(tables, params, ray, tables.references[search.list.offset + k], skip, r.best);
+        }
+        search.list.offset += count;
+        search.list.count -= count;
+        if (r.best.triangle != SETKA_NO_HIT) {
+            last = sk_min(r.best.w, span.w1);
+            if (any) {
+                search.at.walking = 0;
+                search.list.count = 0u;
+            }
+        }
+        phase ^= 1u;
+    } while (total != 0u);
     return r;
 }
 
@@ -214,10 +312,11 @@ SK_FUNCTION sk_walk sk_walk_cells(SetkaGridHeader grid, sk_trace_params params, 
     r.cost.steps = 0u;
     r.cost.tests = 0u;
     while (walking) {
-        const sk_block block = sk_block_at(grid, tables, x.index, y.index, z.index);
-        const sk_u32 bit = sk_bit_in_block(x.index, y.index, z.index);
+        const sk_u32 cx = sk_cell_index(x), cy = sk_cell_index(y), cz = sk_cell_index(z);
+        const sk_block block = sk_block_at(grid, tables, cx, cy, cz);
+        const sk_u32 bit = sk_bit_in_block(cx, cy, cz);
         r.cost.steps += 1u;
-        if (sk_has_bit(sk_mask_of(block), bit)) {
+        if (sk_has_bit(block, bit)) {
             const sk_cell_list list = sk_find_list(tables, block, bit);
             r.best = sk_test_cell(tables, params, ray, list, skip, r.best);
             r.cost.tests += list.count;
@@ -231,9 +330,9 @@ SK_FUNCTION sk_walk sk_walk_cells(SetkaGridHeader grid, sk_trace_params params, 
         if (last * x.speed <= ex && last * y.speed <= ey && last * z.speed <= ez) {
             walking = 0;
         } else {
-            x.index = sk_advance(x, (1u - sk_negative(xy)) * (1u - sk_negative(xz)));
-            y.index = sk_advance(y, (1u - sk_negative(-xy)) * (1u - sk_negative(yz)));
-            z.index = sk_advance(z, (1u - sk_negative(-xz)) * (1u - sk_negative(-yz)));
+            x.index -= (1 - sk_negative(xy)) * (1 - sk_negative(xz));
+            y.index -= (1 - sk_negative(-xy)) * (1 - sk_negative(yz));
+            z.index -= (1 - sk_negative(-xz)) * (1 - sk_negative(-yz));
         }
         if (any && found) walking = 0;
     }

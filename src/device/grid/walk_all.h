@@ -26,17 +26,18 @@ SK_FUNCTION sk_u32 sk_walk_grid_all(SetkaGridHeader grid, sk_trace_params params
     sk_u32 found = 0u;
     float w_in = sk_bits_float(0xff800000u); /* the first cell owns whatever is before it */
     while (walking) {
-        const sk_block block = sk_block_at(grid, tables, x.index, y.index, z.index);
-        const sk_u32 bit = sk_bit_in_block(x.index, y.index, z.index);
+        const sk_u32 cx = sk_cell_index(x), cy = sk_cell_index(y), cz = sk_cell_index(z);
+        const sk_block block = sk_block_at(grid, tables, cx, cy, cz);
+        const sk_u32 bit = sk_bit_in_block(cx, cy, cz);
         const float wx = sk_exit(x) * x.inverse, wy = sk_exit(y) * y.inverse, wz = sk_exit(z) * z.inverse;
         const float w_out = sk_min(wx, sk_min(wy, wz));
         const int is_last = span.w1 <= w_out; /* and owns whatever is behind it */
-        if (sk_has_bit(sk_mask_of(block), bit) && (w_in < w_out || is_last)) {
+        if (sk_has_bit(block, bit) && (w_in < w_out || is_last)) {
             const sk_cell_list list = sk_find_list(tables, block, bit);
             const sk_u32 before = found;
             for (sk_u32 k = 0u; k < list.count; ++k) {
                 const sk_u32 number = tables.references[list.offset + k];
-                const sk_best hit = sk_test_triangle(ray, tables.triangles + (size_t)number * 9u, 1u, number, sk_no_hit());
+                const sk_best hit = sk_test_triangle(ray, tables.triangles, number * 9u, 1u, number, sk_no_hit());
                 if (hit.triangle != SETKA_NO_HIT && hit.w > w_in && (hit.w <= w_out || is_last) && number != skip &&
                     sk_is_visible(params, tables.instance_starts, tables.instances, number))
                     found = write ? before + sk_list_hit(hits + before, found - before, most - before, hit)
@@ -48,11 +49,11 @@ SK_FUNCTION sk_u32 sk_walk_grid_all(SetkaGridHeader grid, sk_trace_params params
         if (is_last || found >= most) {
             walking = 0;
         } else if (wx <= wy && wx <= wz) {
-            x.index = sk_advance(x, 1u);
+            x.index -= 1;
         } else if (wy <= wz) {
-            y.index = sk_advance(y, 1u);
+            y.index -= 1;
         } else {
-            z.index = sk_advance(z, 1u);
+            z.index -= 1;
         }
     }
     return sk_min_u32(found, most);

@@ -56,7 +56,7 @@ SK_FUNCTION sk_best sk_brute_force(sk_trace_params params, sk_working_ray ray, S
             for (sk_u32 k = 0u; k < SK_LANES; ++k) {
                 const sk_u32 number = p * SK_LANES + k;
                 if (number < params.triangle_count) {
-                    const sk_best next = sk_test_triangle(ray, packet + k, SK_LANES, number, best);
+                    const sk_best next = sk_test_triangle(ray, packet, k, SK_LANES, number, best);
                     if (next.triangle != best.triangle && number != skip &&
                         sk_is_visible(params, instance_starts, instances, number))
                         best = next;
@@ -83,7 +83,7 @@ SK_FUNCTION sk_u32 sk_brute_force_all(sk_trace_params params, sk_working_ray ray
             for (sk_u32 k = 0u; k < SK_LANES; ++k) {
                 const sk_u32 number = p * SK_LANES + k;
                 if (number < params.triangle_count) {
-                    const sk_best hit = sk_test_triangle(ray, packet + k, SK_LANES, number, sk_no_hit());
+                    const sk_best hit = sk_test_triangle(ray, packet, k, SK_LANES, number, sk_no_hit());
                     if (hit.triangle != SETKA_NO_HIT && number != skip &&
                         sk_is_visible(params, instance_starts, instances, number))
                         found = write ? sk_list_hit(hits, found, most, hit) : found + 1u;

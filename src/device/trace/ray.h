@@ -19,6 +19,7 @@
 
 typedef struct sk_working_ray {
     sk_vec3 o, d;
+    sk_vec3 inverse;           /* 1 / d, 0 where d is below SK_PARALLEL */
     float w0, w1;              /* where the ray is in the scene's box */
     float pre, scale, shift;   /* t = ((w + shift) * pre) * scale */
     float tmin, tmax;          /* the user's */
@@ -29,6 +30,26 @@ typedef struct sk_working_ray {
     int valid;                 /* 0: the ray misses everything */
 } sk_working_ray;
 
+/** What the plain test of a triangle needs of a ray: 32 bytes, so that other work-items can read it from local memory. */
+typedef struct SK_ALIGNED(16) sk_viewpoint {
+    float ox, oy, oz;
+    float sx, sy;
+    sk_u32 kx, ky, kz;
+} sk_viewpoint;
+
+SK_FUNCTION sk_viewpoint sk_viewpoint_of(sk_working_ray ray) {
+    sk_viewpoint r;
+    r.ox = ray.ox;
+    r.oy = ray.oy;
+    r.oz = ray.oz;
+    r.sx = ray.sx;
+    r.sy = ray.sy;
+    r.kx = ray.kx;
+    r.ky = ray.ky;
+    r.kz = ray.kz;
+    return r;
+}
+
 typedef struct sk_span {
     float w0, w1;
     int meets;
@@ -37,14 +58,19 @@ typedef struct sk_span {
 /** The user's parameter of a working one, never -0. */
 SK_FUNCTION float sk_user_t(sk_working_ray r, float w) { return sk_positive_zero(((w + r.shift) * r.pre) * r.scale); }
 
-/** Narrows `span` to where q + w * d lies in [-pad, size + pad]. */
-SK_FUNCTION sk_span sk_clip_axis(sk_span span, float q, float d, float size, float pad) {
+/** 1 / d, or 0 where it could overflow. */
+SK_FUNCTION float sk_inverse_of(float d) { return sk_abs(d) < SK_PARALLEL ? 0.0f : 1.0f / d; }
+
+/** 1 / p for a power of two from 2^-126 to 2^126. */
+SK_FUNCTION float sk_inverse_power(float p) { return sk_bits_float((254u << 23) - sk_float_bits(p)); }
+
+/** Narrows `span` to where q + w * d lies in [-pad, size + pad]. `inverse` is sk_inverse_of(d). */
+SK_FUNCTION sk_span sk_clip_axis(sk_span span, float q, float d, float inverse, float size, float pad) {
     const float top = size + pad;
     sk_span r = span;
     if (sk_abs(d) < SK_PARALLEL) {
         if (!(-pad <= q && q <= top)) r.meets = 0;
     } else {
-        const float inverse = 1.0f / d;
         const float a = (-pad - q) * inverse, b = (top - q) * inverse;
         const float low = b < a ? b : a, high = b < a ? a : b;
         r.w0 = sk_max(r.w0, low);
@@ -53,14 +79,14 @@ SK_FUNCTION sk_span sk_clip_axis(sk_span span, float q, float d, float size, flo
     return r;
 }
 
-SK_FUNCTION sk_span sk_clip_box(sk_trace_params params, sk_vec3 o, sk_vec3 d) {
+SK_FUNCTION sk_span sk_clip_box(sk_trace_params params, sk_vec3 o, sk_vec3 d, sk_vec3 inverse) {
     sk_span r;
     r.w0 = sk_bits_float(0xff800000u); /* -infinity: origins may be as far away as floats go */
     r.w1 = sk_bits_float(0x7f800000u);
     r.meets = 1;
-    r = sk_clip_axis(r, o.x - params.lower[0], d.x, params.size[0], params.pad);
-    r = sk_clip_axis(r, o.y - params.lower[1], d.y, params.size[1], params.pad);
-    r = sk_clip_axis(r, o.z - params.lower[2], d.z, params.size[2], params.pad);
+    r = sk_clip_axis(r, o.x - params.lower[0], d.x, inverse.x, params.size[0], params.pad);
+    r = sk_clip_axis(r, o.y - params.lower[1], d.y, inverse.y, params.size[1], params.pad);
+    r = sk_clip_axis(r, o.z - params.lower[2], d.z, inverse.z, params.size[2], params.pad);
     r.w0 = r.w0 - sk_abs(r.w0) * 0x1p-20f;
     r.w1 = r.w1 + sk_abs(r.w1) * 0x1p-20f;
     if (!(r.w0 <= r.w1)) r.meets = 0;
@@ -90,13 +116,14 @@ SK_FUNCTION sk_working_ray sk_prepare_ray(sk_trace_params params, SetkaRay ray) 
     r.scale = sk_bits_float((254u << 23) - (sk_float_bits(largest * r.pre) & 0x7f800000u));
     d = sk_scale(sk_scale(d, r.pre), r.scale);
 
-    span = sk_clip_box(params, o, d);
+    const sk_vec3 inverse = sk_make3(sk_inverse_of(d.x), sk_inverse_of(d.y), sk_inverse_of(d.z));
+    span = sk_clip_box(params, o, d, inverse);
     /* A turn leaves an error of some 2^-20 of the distance: sixteen are more than any two floats need. */
     for (sk_u32 turn = 0u; turn < SK_APPROACHES && span.meets && sk_is_far(params, span); ++turn) {
         const float way = span.w0 > params.extent ? span.w0 : span.w1;
         o = sk_add(o, sk_scale(d, way));
         r.shift = r.shift + way;
-        span = sk_clip_box(params, o, d);
+        span = sk_clip_box(params, o, d, inverse);
     }
     r.valid = r.valid && span.meets && !sk_is_far(params, span);
     r.w0 = span.w0;
@@ -104,6 +131,7 @@ SK_FUNCTION sk_working_ray sk_prepare_ray(sk_trace_params params, SetkaRay ray) 
     r.o = o;
     d = sk_make3(sk_straighten(d.x), sk_straighten(d.y), sk_straighten(d.z));
     r.d = d;
+    r.inverse = inverse;
     r.unit = params.unit;
 
     const float ax = sk_abs(d.x), ay = sk_abs(d.y), az = sk_abs(d.z);
@@ -116,7 +144,7 @@ SK_FUNCTION sk_working_ray sk_prepare_ray(sk_trace_params params, SetkaRay ray) 
     const float dz = sk_component(d, r.kz);
     r.sx = sk_component(d, r.kx) / dz;
     r.sy = sk_component(d, r.ky) / dz;
-    r.sz = 1.0f / dz;
+    r.sz = sk_component(inverse, r.kz); /* of the largest component, which is what it was */
     return r;
 }
 

@@ -85,21 +85,24 @@ typedef struct sk_view {
 } sk_view;
 
 /**
- * Vertex k has the components vertices[3 * stride * k], vertices[3 * stride * k + stride], …: stride 1 for packed triangles, more
- * where triangles lie side by side.
+ * Vertex k has the components vertices[first + 3 * stride * k], vertices[first + 3 * stride * k + stride], …: stride 1 for packed
+ * triangles, more where triangles lie side by side.
  */
-SK_FUNCTION sk_view sk_view_triangle(sk_working_ray ray, SK_GLOBAL const float* vertices, sk_u32 stride) {
-    const sk_u32 kx = ray.kx * stride, ky = ray.ky * stride, kz = ray.kz * stride, next = 3u * stride;
+SK_FUNCTION sk_view sk_view_triangle(sk_viewpoint from, SK_GLOBAL const float* vertices, sk_u32 first, sk_u32 stride) {
+    SK_GLOBAL const float* x = vertices + (first + from.kx * stride);
+    SK_GLOBAL const float* y = vertices + (first + from.ky * stride);
+    SK_GLOBAL const float* z = vertices + (first + from.kz * stride);
+    const sk_u32 next = 3u * stride;
     sk_view r;
-    r.a0 = vertices[kz] - ray.oz;
-    r.a1 = vertices[next + kz] - ray.oz;
-    r.a2 = vertices[2u * next + kz] - ray.oz;
-    r.x0 = (vertices[kx] - ray.ox) - ray.sx * r.a0;
-    r.y0 = (vertices[ky] - ray.oy) - ray.sy * r.a0;
-    r.x1 = (vertices[next + kx] - ray.ox) - ray.sx * r.a1;
-    r.y1 = (vertices[next + ky] - ray.oy) - ray.sy * r.a1;
-    r.x2 = (vertices[2u * next + kx] - ray.ox) - ray.sx * r.a2;
-    r.y2 = (vertices[2u * next + ky] - ray.oy) - ray.sy * r.a2;
+    r.a0 = z[0] - from.oz;
+    r.a1 = z[next] - from.oz;
+    r.a2 = z[2u * next] - from.oz;
+    r.x0 = (x[0] - from.ox) - from.sx * r.a0;
+    r.y0 = (y[0] - from.oy) - from.sy * r.a0;
+    r.x1 = (x[next] - from.ox) - from.sx * r.a1;
+    r.y1 = (y[next] - from.oy) - from.sy * r.a1;
+    r.x2 = (x[2u * next] - from.ox) - from.sx * r.a2;
+    r.y2 = (y[2u * next] - from.oy) - from.sy * r.a2;
     return r;
 }
 
@@ -108,14 +111,10 @@ SK_FUNCTION int sk_may_pass(sk_view p) {
     return !sk_mixed_signs(p.x2 * p.y1 - p.y2 * p.x1, p.x0 * p.y2 - p.y0 * p.x2, p.x1 * p.y0 - p.y1 * p.x0);
 }
 
-SK_FUNCTION int sk_may_hit(sk_working_ray ray, SK_GLOBAL const float* vertices, sk_u32 stride) {
-    return sk_may_pass(sk_view_triangle(ray, vertices, stride));
-}
-
 /** The best of `best` and the hit of triangle `number`, with vertices as for sk_view_triangle. */
-SK_FUNCTION sk_best sk_test_triangle(sk_working_ray ray, SK_GLOBAL const float* vertices, sk_u32 stride, sk_u32 number,
-                                     sk_best best) {
-    const sk_view p = sk_view_triangle(ray, vertices, stride);
+SK_FUNCTION sk_best sk_test_triangle(sk_working_ray ray, SK_GLOBAL const float* vertices, sk_u32 first, sk_u32 stride,
+                                     sk_u32 number, sk_best best) {
+    const sk_view p = sk_view_triangle(sk_viewpoint_of(ray), vertices, first, stride);
     sk_best r = best;
     if (sk_may_pass(p)) {
         const float unit = ray.unit;
