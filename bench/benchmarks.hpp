@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "bench/embree.hpp"
 #include "bench/fixture.hpp"
 #include "bench/options.hpp"
 #include "bench/scenes.hpp"
@@ -18,6 +19,7 @@ namespace setka::bench {
 struct Bench {
     const Options& options;
     std::vector<Target> targets;
+    std::vector<EmbreeQuality> embree;
     std::vector<SceneCase> scenes;
     Validator& validator;
     SceneLoader loader;
@@ -27,8 +29,9 @@ struct Bench {
 /// scan/ELEMENTS/TARGET, sort/…, reduce/…. The bench has to outlive the run.
 void register_primitives(Bench& bench);
 
-/// build/TARGET/SCENE, trace/KIND/STEP/DEVICE/SCENE, frame/TARGET/SCENE, by scene and then by device. Another
-/// tracer to compare with joins the targets of a scene here, under a name of its own in TARGET's place.
+/// build/TARGET/SCENE, trace/KIND/STEP/DEVICE/SCENE, frame/TARGET/SCENE, by scene, then by device, then by
+/// density, which ends the name if there are several. Embree follows the devices, under a name of its own in
+/// TARGET's place.
 void register_scenes(Bench& bench);
 
 }  // namespace setka::bench

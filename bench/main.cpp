@@ -28,7 +28,13 @@ void add_context(const Bench& bench) {
         benchmark::AddCustomContext("driver " + info.id, info.driver);
         benchmark::AddCustomContext("platform " + info.id, info.platform);
     }
-    benchmark::AddCustomContext("density", std::to_string(bench.options.density));
+    add_embree_context(bench.embree);
+    std::string densities;
+    for (const float density : bench.options.densities) {
+        if (!densities.empty()) densities += ',';
+        densities += to_string(density);
+    }
+    benchmark::AddCustomContext("density", densities);
     benchmark::AddCustomContext("picture_size", std::to_string(bench.options.size));
     benchmark::AddCustomContext("golden_rows", std::to_string(bench.validator.golden().size()));
 }
@@ -38,8 +44,14 @@ int run(int argc, char** argv) {
     benchmark::Initialize(&argc, argv, print_help);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return exit_error;
     Validator validator(options);
-    Bench bench{options,   find_targets(options.devices),     choose_scenes(options, validator.golden()),
-                validator, SceneLoader(options.scene_folder), {}};
+    const std::vector<EmbreeQuality> embree = find_embree(options.devices);  // it knows best what ails its names
+    Bench bench{options,
+                find_targets(options.devices),
+                embree,
+                choose_scenes(options, validator.golden()),
+                validator,
+                SceneLoader(options.scene_folder),
+                {}};
     add_context(bench);
     register_primitives(bench);
     register_scenes(bench);

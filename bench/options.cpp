@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cstdio>
 #include <cstdlib>
+#include <iterator>
 #include <sstream>
 #include <string_view>
 
@@ -67,11 +68,13 @@ constexpr Option own_options[] = {
          o.golden = value;
          o.golden_was_named = true;
      }},
-    {"--devices", "ids with commas, each with a /shape if wanted: cuda:0/library, opencl:0; default: all",
+    {"--devices", "ids with commas, each with a /shape if wanted: cuda:0/library, opencl:0, embree/low; default: all",
      [](Options& o, const std::string& name, const std::string& value) { o.devices = split(name, value); }},
-    {"--density", "cells a triangle of the grids that are timed; default: 4",
+    {"--density", "cells a triangle of the grids that are timed, with commas if several; default: 4",
      [](Options& o, const std::string& name, const std::string& value) {
-         o.density = parse_number(name, value, 1e-6f, 1e6f);
+         o.densities.clear();
+         for (const std::string& density : split(name, value))
+             o.densities.push_back(parse_number(name, density, 1e-6f, 1e6f));
      }},
     {"--size", "rays along each side of the square picture; default: 1024",
      [](Options& o, const std::string& name, const std::string& value) {
@@ -118,6 +121,11 @@ void print_help() {
     for (const Option& option : own_options) std::printf("  %-14s %s\n", option.name, option.help);
     std::puts("\nExit codes: 0 ok, 1 a device computed something wrong, 2 bad usage, input or device.\n");
     benchmark::PrintDefaultHelp();
+}
+
+std::string to_string(float density) {
+    char text[32];
+    return {text, std::to_chars(std::begin(text), std::end(text), density).ptr};
 }
 
 const char* to_string(GridStep step) noexcept { return step == GridStep::Dda ? "dda" : "branch-free"; }

@@ -17,7 +17,7 @@ struct Options {
     std::filesystem::path golden;        ///< the file of golden digests
     bool golden_was_named = false;       ///< then the file has to be there
     std::vector<std::string> devices;    ///< "id" or "id/shape"; empty: every device
-    float density = 4;                   ///< of the grids that are timed
+    std::vector<float> densities{4};     ///< of the grids that are timed
     std::uint32_t size = 1024;           ///< rays along each side of the square picture
     std::vector<GridStep> steps{GridStep::Dda, GridStep::BranchFree};
     std::vector<std::uint32_t> elements{1u << 16, 1u << 20, 1u << 24};  ///< sizes of scan, sort and reduce
@@ -26,6 +26,9 @@ struct Options {
 /// Takes setka's options out of the arguments and leaves the others. Throws InvalidArgument for a value out
 /// of range.
 [[nodiscard]] Options take_options(int& argc, char** argv);
+
+/// As short as it can be without loss: "4", "0.5".
+[[nodiscard]] std::string to_string(float density);
 
 /// setka's options, then Google Benchmark's, on standard output.
 void print_help();

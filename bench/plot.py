@@ -1,19 +1,21 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""How do the devices compare at a glance? Turns reports of setka_bench into a chart.
+"""How do the devices compare at a glance, and how does their cost grow? Turns reports of setka_bench into a chart.
 
-Four panels: triangles a second of the build, and rays a second of primary, shadow and diffuse rays. Each has a group of
-bars for a scene and in it a bar for a device. Where a device was measured with several shapes of the primitives, the
-build shown is the one with the first, which is the device's default."""
+throughput: four panels, triangles a second of the build and rays a second of primary, shadow and diffuse rays, each with a
+group of bars for a scene and in it a bar for a device.
+growth: nanoseconds of build for each triangle against the number of triangles, for scenes that come in any size.
+density: the four rates against the cells of the grid for each triangle; what has no grid is a level line.
+Where a device was measured with several shapes of the primitives, those shown are of the first, which is its default."""
 
 import argparse
-import json
 import re
-import statistics
 import sys
-from collections import Counter, defaultdict
-from dataclasses import dataclass, field
+from collections.abc import Callable
 from pathlib import Path
+
+sys.dont_write_bytecode = True  # the sources' folder is not the place
+from report import BadInput, Row, add_step_option, read_report  # noqa: E402
 
 PANELS = {
     "build": ("Build", "Mtri/s"),
@@ -21,116 +23,144 @@ PANELS = {
     "shadow": ("Shadow rays, any hit", "Mray/s"),
     "diffuse": ("Diffuse rays, closest hit", "Mray/s"),
 }
-NAME = re.compile(
-    r"(?:build/(?P<build_device>[a-z]+:\d+)/(?P<shape>\w+)"
-    r"|trace/(?P<kind>[\w-]+)/(?P<step>[\w-]+)/(?P<device>[a-z]+:\d+))/(?P<scene>.+)/manual_time"
-)
+SIZED = re.compile(r"(?P<family>\w+):\d+(?P<viewpoint>@\w+)?")  # spheres:1000000
+LINES = ("-", "--", ":", "-.")
+MARKERS = "osD^vXP*"
 
 
-class BadInput(Exception):
-    """A report that cannot be used; the message names the file."""
+def series_by_place(rows: list[Row], place: Callable[[Row], tuple]) -> dict[tuple, Row]:
+    """The rows by their place in a chart, of which there is one for each."""
+    places: dict[tuple, Row] = {}
+    for row in rows:
+        if places.setdefault(place(row), row) is not row:
+            raise BadInput(f"{row.file}: {row.task} of {row.scene} on {row.label}{row.suffix} was measured twice")
+    return places
 
 
-@dataclass
-class Results:
-    """Throughputs by panel, scene and device, each scene and device in the order it was met in."""
-
-    values: dict[tuple[str, str, str], float] = field(default_factory=dict)
-    scenes: dict[str, None] = field(default_factory=dict)
-    devices: dict[str, None] = field(default_factory=dict)
-
-    def add(self, file: Path, panel: str, scene: str, device: str, value: float) -> None:
-        if (panel, scene, device) in self.values:
-            raise BadInput(f"{file}: {panel} of {scene} on {device} was measured twice")
-        self.values[panel, scene, device] = value
-        self.scenes[scene] = None
-        self.devices[device] = None
-
-
-def device_labels(context: dict[str, str]) -> dict[str, str]:
-    """What the legend calls each device id of a report: its name and API, and the id where that is not enough."""
-    labels = {}
-    for key, name in context.items():
-        if key.startswith("device "):
-            identity = key.removeprefix("device ")
-            api = {"cuda": "CUDA", "opencl": "OpenCL"}.get(identity.split(":")[0], identity.split(":")[0])
-            labels[identity] = f"{name}, {api}"
-    count = Counter(labels.values())
-    return {identity: f"{label} ({identity})" if count[label] > 1 else label for identity, label in labels.items()}
-
-
-def throughput(rows: list[dict], unit: str) -> float:
-    """The median of the repetitions: the report's own where it holds aggregates only."""
-    own = [row for row in rows if row.get("aggregate_name") == "median"]
-    return statistics.median(row[unit] for row in (own or rows))
-
-
-def read_report(file: Path, step: str, results: Results) -> None:
-    try:
-        report = json.loads(file.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise BadInput(f"{file}: {error.strerror}") from error
-    except ValueError as error:
-        raise BadInput(f"{file}: not JSON, perhaps of a run that was stopped: {error}") from error
-    try:
-        labels = device_labels(report["context"])
-        repetitions = defaultdict(list)
-        for row in report["benchmarks"]:
-            if row.get("error_occurred"):
-                print(f"plot.py: {file}: {row['name']} was skipped: {row['error_message']}", file=sys.stderr)
-            else:
-                repetitions[row["run_name"]].append(row)
-        shapes: dict[str, str] = {}
-        for name, rows in repetitions.items():
-            match = NAME.fullmatch(name)
-            if match is None:
-                continue
-            panel = match["kind"] or "build"
-            device = match["build_device"] or match["device"]
-            if match["kind"]:
-                is_shown = match["step"] == step
-            else:
-                is_shown = match["shape"] == shapes.setdefault(device, match["shape"])
-            if panel in PANELS and is_shown:
-                results.add(file, panel, match["scene"], labels[device], throughput(rows, PANELS[panel][1]))
-    except (KeyError, TypeError, AttributeError) as error:
-        raise BadInput(f"{file}: not a report of setka_bench: {error!r}") from error
-
-
-def draw_panel(axes, results: Results, panel: str) -> None:
-    title, unit = PANELS[panel]
+def style_panel(axes, title: str, y_label: str) -> None:
     axes.set_title(title, loc="left", fontsize=11, fontweight="bold")
-    axes.set_ylabel(unit)
-    axes.set_xticks(range(len(results.scenes)), list(results.scenes), rotation=20, ha="right", rotation_mode="anchor")
+    axes.set_ylabel(y_label)
     axes.spines[["top", "right"]].set_visible(False)
     axes.grid(axis="y", color="0.88", linewidth=0.8)
     axes.set_axisbelow(True)
-    shown = [value for (of_panel, _, _), value in results.values.items() if of_panel == panel]
-    if not shown:
-        axes.text(0.5, 0.5, "not measured", transform=axes.transAxes, ha="center", color="0.5")
-        return
-    # Bars on a logarithmic axis say little of ratios, but where some are invisible the others say nothing.
-    is_log = max(shown) > 20 * min(shown)
-    if is_log:
+
+
+def scale_panel(axes, values: list[float], y_label: str) -> None:
+    """Bars and lines on a logarithmic axis say little of ratios, but where some are invisible the others say nothing."""
+    if max(values) > 20 * min(values):
         axes.set_yscale("log")
-        axes.set_ylim(min(shown) / 2, max(shown) * 3)
-        axes.set_ylabel(f"{unit}, logarithmic")
+        axes.set_ylim(min(values) / 2, max(values) * 3)
+        axes.set_ylabel(f"{y_label}, logarithmic")
     else:
-        axes.set_ylim(0, max(shown) * 1.15)
-    width = 0.8 / len(results.devices)
-    for number, device in enumerate(results.devices):
-        for place, scene in enumerate(results.scenes):
-            value = results.values.get((panel, scene, device))
+        axes.set_ylim(0, max(values) * 1.15)
+
+
+def say_not_measured(axes) -> None:
+    axes.text(0.5, 0.5, "not measured", transform=axes.transAxes, ha="center", color="0.5")
+
+
+def draw_bars(axes, values: dict[tuple, float], scenes: list[str], devices: list[str]) -> None:
+    width = 0.8 / len(devices)
+    for number, device in enumerate(devices):
+        for place, scene in enumerate(scenes):
+            value = values.get((scene, device))
             if value is None:
                 continue
-            x = place + (number - (len(results.devices) - 1) / 2) * width
+            x = place + (number - (len(devices) - 1) / 2) * width
             axes.bar(x, value, width * 0.92, color=f"C{number}")
             axes.annotate(f"{value:.3g}" if value < 1000 else f"{value:.0f}", (x, value), xytext=(0, 2),
                           textcoords="offset points", ha="center", fontsize=7,
-                          rotation=90 if len(results.devices) * len(results.scenes) > 36 else 0)
+                          rotation=90 if len(devices) * len(scenes) > 36 else 0)
 
 
-def draw(results: Results, output: Path, title: str) -> None:
+def throughput_chart(pyplot, rows: list[Row]):
+    from matplotlib.patches import Patch
+
+    shown = [row for row in rows if row.task in PANELS]
+    if not shown:
+        raise BadInput(f"{rows[0].file}: no build or trace was measured")
+    places = series_by_place(shown, lambda row: (row.task, row.scene, row.label + row.suffix))
+    scenes = list(dict.fromkeys(row.scene for row in shown))
+    devices = list(dict.fromkeys(row.label + row.suffix for row in shown))
+    bars = len(scenes) * len(devices)
+    figure, panels = pyplot.subplots(2, 2, figsize=(min(max(9.0, 0.5 * bars + 4), 22), 7.5), sharex=True)
+    for axes, (panel, (title, unit)) in zip(panels.flat, PANELS.items()):
+        values = {place[1:]: row.value(unit) for place, row in places.items() if place[0] == panel}
+        style_panel(axes, title, unit)
+        axes.set_xticks(range(len(scenes)), scenes, rotation=20, ha="right", rotation_mode="anchor")
+        if values:
+            scale_panel(axes, list(values.values()), unit)
+            draw_bars(axes, values, scenes, devices)
+        else:
+            say_not_measured(axes)
+    return figure, [Patch(color=f"C{number}", label=device) for number, device in enumerate(devices)]
+
+
+def growth_chart(pyplot, rows: list[Row]):
+    from matplotlib.lines import Line2D
+
+    points: dict[str, dict[str, list[tuple[float, float]]]] = {}
+    shown = [(row, SIZED.fullmatch(row.scene)) for row in rows if row.task == "build"]
+    series_by_place([row for row, _ in shown], lambda row: (row.scene, row.label + row.suffix))
+    for row, sized in shown:
+        if sized:
+            triangles = row.value("triangles")
+            family = sized["family"] + (sized["viewpoint"] or "")
+            of_device = points.setdefault(family, {}).setdefault(row.label + row.suffix, [])
+            of_device.append((triangles, row.value("wall_ms") * 1e6 / triangles))
+    if not any(len(line) > 1 for lines in points.values() for line in lines.values()):
+        raise BadInput(f"{rows[0].file}: no build was measured in several sizes, such as spheres:10000 and spheres:100000")
+    devices = list(dict.fromkeys(device for lines in points.values() for device in lines))
+    figure, panels = pyplot.subplots(1, len(points), figsize=(max(7.0, 5.5 * len(points)), 5), squeeze=False)
+    for axes, (family, lines) in zip(panels.flat, points.items()):
+        style_panel(axes, family, "build, ns a triangle")
+        scale_panel(axes, [y for line in lines.values() for _, y in line], "build, ns a triangle")
+        axes.set_xscale("log")
+        axes.set_xlabel("triangles")
+        for device, line in lines.items():
+            axes.plot(*zip(*sorted(line)), color=f"C{devices.index(device)}", marker="o", markersize=4)
+    return figure, [Line2D([], [], color=f"C{i}", marker="o", label=device) for i, device in enumerate(devices)]
+
+
+def density_chart(pyplot, rows: list[Row]):
+    from matplotlib.lines import Line2D
+
+    shown = [row for row in rows if row.task in PANELS]
+    if len({row.density for row in shown if row.density is not None}) < 2:
+        raise BadInput(f"{rows[0].file}: nothing was measured with several densities (setka_bench --density=1,2,4)")
+    series_by_place(shown, lambda row: (row.task, row.scene, row.label, row.density))
+    scenes = list(dict.fromkeys(row.scene for row in shown))
+    devices = list(dict.fromkeys(row.label for row in shown))
+    figure, panels = pyplot.subplots(2, 2, figsize=(11, 8), sharex=True)
+    for axes, (panel, (title, unit)) in zip(panels.flat, PANELS.items()):
+        style_panel(axes, title, unit)
+        axes.set_xscale("log", base=2)
+        axes.xaxis.set_major_formatter(lambda x, _: f"{x:g}")
+        axes.set_xlabel("cells a triangle")
+        lines: dict[tuple[str, str], list[tuple[float | None, float]]] = {}
+        for row in shown:
+            if row.task == panel:
+                lines.setdefault((row.scene, row.label), []).append((row.density, row.value(unit)))
+        if not lines:
+            say_not_measured(axes)
+            continue
+        scale_panel(axes, [y for line in lines.values() for _, y in line], unit)
+        for (scene, device), line in lines.items():
+            look = {"color": f"C{scenes.index(scene)}", "linestyle": LINES[devices.index(device) % len(LINES)]}
+            if line[0][0] is None:
+                axes.axhline(line[0][1], **look)
+            else:
+                axes.plot(*zip(*sorted(line)), marker=MARKERS[devices.index(device) % len(MARKERS)], markersize=4, **look)
+    of_scenes = [Line2D([], [], color=f"C{i}", linewidth=4, label=scene) for i, scene in enumerate(scenes)]
+    return figure, of_scenes + [
+        Line2D([], [], color="0.3", linestyle=LINES[i % len(LINES)], label=device) for i, device in enumerate(devices)
+    ]
+
+
+CHARTS = {"throughput": throughput_chart, "growth": growth_chart, "density": density_chart}
+
+
+def draw(chart: str, rows: list[Row], output: Path, title: str) -> None:
     try:
         import matplotlib
     except ImportError as error:
@@ -138,13 +168,8 @@ def draw(results: Results, output: Path, title: str) -> None:
     matplotlib.use("agg")
     matplotlib.rcParams["svg.hashsalt"] = "setka"  # the same report gives the same file
     from matplotlib import pyplot
-    from matplotlib.patches import Patch
 
-    bars = len(results.scenes) * len(results.devices)
-    figure, panels = pyplot.subplots(2, 2, figsize=(min(max(9.0, 0.5 * bars + 4), 22), 7.5), sharex=True)
-    for axes, panel in zip(panels.flat, PANELS):
-        draw_panel(axes, results, panel)
-    handles = [Patch(color=f"C{number}", label=device) for number, device in enumerate(results.devices)]
+    figure, handles = CHARTS[chart](pyplot, rows)
     columns = min(len(handles), 3)
     height = (-(-len(handles) // columns) * 0.24 + (0.35 if title else 0) + 0.1) / figure.get_figheight()
     figure.tight_layout(rect=(0, 0, 1, 1 - height), h_pad=1.5)
@@ -162,16 +187,15 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("reports", nargs="+", type=Path, metavar="JSON", help="what --benchmark_out=JSON wrote")
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="CHART", help="chart.svg or chart.png")
-    parser.add_argument("--step", choices=("dda", "branch-free"), default="dda", help="stepping rule shown; default: dda")
+    parser.add_argument("--chart", choices=CHARTS, default="throughput", help="which one; default: throughput")
+    add_step_option(parser)
     parser.add_argument("--title", default="", help="a line above the chart")
     arguments = parser.parse_args()
-    results = Results()
     try:
-        for file in arguments.reports:
-            read_report(file, arguments.step, results)
-        if not results.values:
+        rows = [row for file in arguments.reports for row in read_report(file, arguments.step)]
+        if not rows:
             raise BadInput(f"{arguments.reports[0]}: no build or trace was measured")
-        draw(results, arguments.output, arguments.title)
+        draw(arguments.chart, rows, arguments.output, arguments.title)
     except BadInput as error:
         print(f"plot.py: {error}", file=sys.stderr)
         return 1

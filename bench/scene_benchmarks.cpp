@@ -32,7 +32,7 @@ void add_grid_counters(benchmark::State& state, const Subject& subject) {
     state.counters["triangles"] = header.triangle_count;
     state.counters["cells"] = header.cell_count;
     state.counters["pairs"] = header.reference_count;
-    state.counters["table_bytes"] = static_cast<double>(subject.grid().size_bytes());
+    add_memory_counters(state, header.triangle_count, subject.grid().size_bytes());
 }
 
 void time_build(benchmark::State& state, Subject& subject) {
@@ -69,39 +69,45 @@ void time_frame(benchmark::State& state, Subject& subject) {
         static_cast<double>(subject.rays().primary.size() + subject.rays().shadow.size());
 }
 
-/// The benchmarks of one scene on one target.
+/// The benchmarks of one scene on one target at one density.
 class Registrar {
   public:
-    Registrar(Bench& bench, Target& target, const SceneCase& scene)
-        : bench_(bench), target_(target), scene_(scene) {}
+    Registrar(Bench& bench, Target& target, const SceneCase& scene, float density)
+        : bench_(bench), target_(target), scene_(scene), density_(density) {}
 
     void add(const std::string& name, const std::function<void(benchmark::State&, Subject&)>& body) const {
-        add_benchmark(name, [self = *this, body](benchmark::State& state) { body(state, self.subject()); });
+        add_benchmark(name + '/' + scene_.to_string() + suffix(),
+                      [self = *this, body](benchmark::State& state) { body(state, self.subject()); });
     }
 
   private:
+    [[nodiscard]] std::string suffix() const {
+        if (bench_.options.densities.size() == 1) return "";
+        return std::string("/density:") + to_string(density_);
+    }
     [[nodiscard]] Subject& subject() const {
-        return bench_.slot.get<Subject>(target_.name() + ' ' + scene_.to_string(), [this] {
+        auto& subject = bench_.slot.get<Subject>(target_.name() + ' ' + scene_.to_string(), [this] {
             return std::make_unique<Subject>(target_, scene_, bench_.loader.load(scene_), bench_.options,
                                              bench_.validator);
         });
+        subject.use_density(density_);
+        return subject;
     }
 
     Bench& bench_;
     Target& target_;
     const SceneCase& scene_;
+    float density_;
 };
 
-void register_scene(Bench& bench, Target& target, const SceneCase& scene) {
-    const Registrar registrar(bench, target, scene);
-    const std::string of_target = '/' + target.name() + '/' + scene.to_string();
-    registrar.add("build" + of_target, time_build);
-    registrar.add("frame" + of_target, time_frame);
+void register_scene(Bench& bench, Target& target, const SceneCase& scene, float density) {
+    const Registrar registrar(bench, target, scene, density);
+    registrar.add("build/" + target.name(), time_build);
+    registrar.add("frame/" + target.name(), time_frame);
     if (!target.is_first_of_device()) return;
-    const std::string of_device = '/' + target.info().id + '/' + scene.to_string();
     for (const TraceCase& what : trace_cases)
         for (const GridStep step : bench.options.steps)
-            registrar.add(std::string("trace/") + what.name + '/' + to_string(step) + of_device,
+            registrar.add(std::string("trace/") + what.name + '/' + to_string(step) + '/' + target.info().id,
                           [&what, step](benchmark::State& state, Subject& subject) {
                               time_trace(state, subject, what, step);
                           });
@@ -110,8 +116,11 @@ void register_scene(Bench& bench, Target& target, const SceneCase& scene) {
 }  // namespace
 
 void register_scenes(Bench& bench) {
-    for (const SceneCase& scene : bench.scenes)
-        for (Target& target : bench.targets) register_scene(bench, target, scene);
+    for (const SceneCase& scene : bench.scenes) {
+        for (Target& target : bench.targets)
+            for (const float density : bench.options.densities) register_scene(bench, target, scene, density);
+        register_embree(bench, scene);
+    }
 }
 
 }  // namespace setka::bench

@@ -33,27 +33,37 @@ void check_queries(Queue& queue, const Grid& grid, const workload::StandardRays&
 
 Subject::Subject(Target& target, const SceneCase& name, const LoadedScene& loaded, const Options& options,
                  Validator& validator)
-    : queue_(target.device().make_queue()), scene_(queue_, loaded.scene) {
-    for (const float density : {golden_density, options.density}) {
-        if (grid_ && density == golden_density) continue;
-        validate(name, loaded.view, options, density, target.name(), validator);
-    }
-    rays_ = workload::standard_rays(queue_, *grid_, loaded.view, options.size);
+    : name_(name),
+      view_(loaded.view),
+      target_(target.name()),
+      options_(options),
+      validator_(validator),
+      queue_(target.device().make_queue()),
+      scene_(queue_, loaded.scene) {
+    use_density(golden_density);
+    rays_ = workload::standard_rays(queue_, *grid_, view_, options.size);
     hits_ = queue_.make_buffer<Hit>(rays_.primary.size(), "hits");
     flags_ = queue_.make_buffer<std::uint32_t>(rays_.primary.size(), "occlusion flags");
 }
 
-void Subject::validate(const SceneCase& name, const workload::StandardView& view, const Options& options,
-                       float density, const std::string& target, Validator& validator) {
+void Subject::use_density(float density) {
+    if (density_ == density) return;
+    density_.reset();
+    costs_.clear();
+    validate(density);
+    density_ = density;
+}
+
+void Subject::validate(float density) {
     builder_ = make_grid_builder({.density = density});
     rebuild();
     const Digest tables = grid_->digest(queue_);
-    const auto rays = workload::standard_rays(queue_, *grid_, view, workload::fingerprint_rays_size);
-    for (const GridStep step : options.steps) {
-        const std::string who = target + ", step " + to_string(step);
-        const workload::Results results = workload::take_results(queue_, scene_, *grid_, view, rays, step);
-        validator.check(name, density, workload::fingerprint(tables, results), who);
-        check_queries(queue_, *grid_, rays, step, name.to_string() + " on " + who);
+    const auto rays = workload::standard_rays(queue_, *grid_, view_, workload::fingerprint_rays_size);
+    for (const GridStep step : options_.steps) {
+        const std::string who = target_ + ", step " + to_string(step);
+        const workload::Results results = workload::take_results(queue_, scene_, *grid_, view_, rays, step);
+        validator_.check(name_, density, workload::fingerprint(tables, results), who);
+        check_queries(queue_, *grid_, rays, step, name_.to_string() + " on " + who);
     }
 }
 

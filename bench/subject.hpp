@@ -45,10 +45,13 @@ struct MeanCost {
 
 class Subject final : public Fixture {
   public:
-    /// Uploads the scene, and checks the fingerprint and the queries of every step that is asked for, at the
-    /// golden density and at that of the options. Throws Mismatch, or OutOfMemory.
+    /// Uploads the scene, and uses the golden density. Options and validator have to outlive this.
     Subject(Target& target, const SceneCase& name, const LoadedScene& loaded, const Options& options,
             Validator& validator);
+
+    /// Builds a grid of this density, and checks the fingerprint and the queries of every step that is asked
+    /// for; nothing if the grid is of this density. Throws Mismatch, or OutOfMemory.
+    void use_density(float density);
 
     [[nodiscard]] Queue& queue() noexcept { return queue_; }
     [[nodiscard]] const workload::StandardRays& rays() const noexcept { return rays_; }
@@ -63,12 +66,17 @@ class Subject final : public Fixture {
     [[nodiscard]] const MeanCost& cost(const TraceCase& what, GridStep step);
 
   private:
-    void validate(const SceneCase& name, const workload::StandardView& view, const Options& options,
-                  float density, const std::string& target, Validator& validator);
+    void validate(float density);
 
+    SceneCase name_;
+    workload::StandardView view_;
+    std::string target_;
+    const Options& options_;
+    Validator& validator_;
     Queue queue_;
     DeviceScene scene_;
     std::unique_ptr<GridBuilder> builder_;
+    std::optional<float> density_;  ///< of a grid that was checked
     std::uint64_t row_count_ = 0;
     std::optional<Grid> grid_;
     workload::StandardRays rays_;

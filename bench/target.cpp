@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "bench/embree.hpp"
 #include "setka/error.hpp"
 
 namespace setka::bench {
@@ -68,6 +69,7 @@ std::vector<Target> find_targets(const std::vector<std::string>& names) {
     if (names.empty())
         for (const DeviceInfo& info : infos) add(targets, info, default_shapes(info.backend));
     for (const std::string& name : names) {
+        if (is_embree(name)) continue;
         const std::size_t slash = name.find('/');
         const auto info = std::ranges::find(infos, name.substr(0, slash), &DeviceInfo::id);
         if (info == infos.end()) {
@@ -79,6 +81,11 @@ std::vector<Target> find_targets(const std::vector<std::string>& names) {
         const std::string shape = slash == std::string::npos ? "" : name.substr(slash + 1);
         add(targets, *info, parse_shapes(name, shape, info->backend));
     }
+    if (targets.empty())
+        throw Error(ErrorCategory::InvalidArgument,
+                    "no device of setka is named, only Embree, whose rays and hits one of them has to give; "
+                    "accepted: one of them too, such as " +
+                        infos.front().id);
     return targets;
 }
 

@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <string>
 
 #include "setka/device.hpp"
 
@@ -24,6 +25,14 @@ struct Work {
 /// and is not timed.
 void time_work(benchmark::State& state, Queue& queue, const Work& work, const std::function<void()>& run,
                const std::function<void()>& prepare = {});
+
+/// The same of work that is done when `run` returns, on the host's threads: wall time and throughput, and
+/// `bytes_moved` unless it is 0. `label` says on what.
+void time_host_work(benchmark::State& state, const std::string& label, const Work& work,
+                    const std::function<void()>& run);
+
+/// The structure's bytes, and those of it and of the scratch that was counted before for each triangle.
+void add_memory_counters(benchmark::State& state, std::uint64_t triangle_count, std::uint64_t table_bytes);
 
 [[nodiscard]] constexpr double millions(std::uint64_t count) noexcept {
     return static_cast<double>(count) / 1e6;

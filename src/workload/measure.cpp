@@ -45,6 +45,21 @@ Measurement measure(Queue& queue, std::uint32_t repeats, const std::function<voi
     return result;
 }
 
+Measurement measure(std::uint32_t repeats, const std::function<void()>& work) {
+    if (repeats > 1) work();
+    std::vector<double> wall_ms;
+    for (std::uint32_t i = 0; i < repeats; ++i) {
+        const Stopwatch watch;
+        work();
+        wall_ms.push_back(watch.elapsed_ms());
+    }
+    Measurement result;
+    result.repeats = repeats;
+    result.wall_ms = median(wall_ms);
+    result.wall_spread_ms = quartile_distance(wall_ms);
+    return result;
+}
+
 double median(std::vector<double> values) {
     if (values.empty()) return 0;
     std::ranges::sort(values);

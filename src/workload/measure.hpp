@@ -36,6 +36,9 @@ struct Measurement {
 [[nodiscard]] Measurement measure(Queue& queue, std::uint32_t repeats, const std::function<void()>& work,
                                   const std::function<void()>& prepare = {});
 
+/// The same of work that is done when it returns: wall time only.
+[[nodiscard]] Measurement measure(std::uint32_t repeats, const std::function<void()>& work);
+
 /// 0 for an empty list, the mean of the middle two for an even count.
 [[nodiscard]] double median(std::vector<double> values);
 
