@@ -21,9 +21,10 @@ namespace {
 }
 
 template <typename T, typename Agree>
-[[nodiscard]] std::uint64_t count(std::span<const Hit> expected, std::span<const T> found, const Agree& is_same) {
-    std::uint64_t differing = expected.size() > found.size() ? expected.size() - found.size()
-                                                             : found.size() - expected.size();
+[[nodiscard]] std::uint64_t count(std::span<const Hit> expected, std::span<const T> found,
+                                  const Agree& is_same) {
+    std::uint64_t differing =
+        expected.size() > found.size() ? expected.size() - found.size() : found.size() - expected.size();
     for (std::size_t i = 0; i < std::min(expected.size(), found.size()); ++i)
         if (!is_same(expected[i], found[i])) ++differing;
     return differing;

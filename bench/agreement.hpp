@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Does another tracer see what setka sees? Not bit for bit: it rounds in its own way, and may miss at an edge.
+/// Does another tracer see what setka sees? Not bit for bit: it rounds in its own way, and may miss at an
+/// edge.
 #pragma once
 
 #include <cstdint>

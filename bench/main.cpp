@@ -44,14 +44,11 @@ int run(int argc, char** argv) {
     benchmark::Initialize(&argc, argv, print_help);
     if (benchmark::ReportUnrecognizedArguments(argc, argv)) return exit_error;
     Validator validator(options);
-    const std::vector<EmbreeQuality> embree = find_embree(options.devices);  // it knows best what ails its names
-    Bench bench{options,
-                find_targets(options.devices),
-                embree,
-                choose_scenes(options, validator.golden()),
-                validator,
-                SceneLoader(options.scene_folder),
-                {}};
+    const std::vector<EmbreeQuality> embree =
+        find_embree(options.devices);  // it knows best what ails its names
+    Bench bench{
+        options,   find_targets(options.devices),     embree, choose_scenes(options, validator.golden()),
+        validator, SceneLoader(options.scene_folder), {}};
     add_context(bench);
     register_primitives(bench);
     register_scenes(bench);

@@ -68,7 +68,8 @@ constexpr Option own_options[] = {
          o.golden = value;
          o.golden_was_named = true;
      }},
-    {"--devices", "ids with commas, each with a /shape if wanted: cuda:0/library, opencl:0, embree/low; default: all",
+    {"--devices",
+     "ids with commas, each with a /shape if wanted: cuda:0/library, opencl:0, embree/low; default: all",
      [](Options& o, const std::string& name, const std::string& value) { o.devices = split(name, value); }},
     {"--density", "cells a triangle of the grids that are timed, with commas if several; default: 4",
      [](Options& o, const std::string& name, const std::string& value) {

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: MIT
 """Who is how many times as fast as Embree? Prints reports of setka_bench as tables in Markdown.
 
-Each report is one run and becomes one table, since only rates of one run can be compared. The baseline's row holds its rates,
-and those of the others how many times these theirs are: 2 is twice as fast. Bytes are for each triangle: what is kept, and what a
-build needs for a time besides."""
+Each report is one run and becomes one table, since only rates of one run can be compared. The baseline's row holds its
+rates; those of the others hold how many times as fast they are. Bytes are for each triangle: what is kept, and what a build
+needs for a time besides."""
 
 import argparse
 import sys

@@ -8,9 +8,10 @@ namespace setka::bench {
 std::vector<EmbreeQuality> find_embree(const std::vector<std::string>& names) {
     for (const std::string& name : names)
         if (is_embree(name))
-            throw Error(ErrorCategory::Unsupported,
-                        "device '" + name +
-                            "' is not in this build: install libembree-dev and configure with SETKA_EMBREE=ON");
+            throw Error(
+                ErrorCategory::Unsupported,
+                "device '" + name +
+                    "' is not in this build: install libembree-dev and configure with SETKA_EMBREE=ON");
     return {};
 }
 

@@ -4,7 +4,6 @@
 #include <iterator>
 #include <memory>
 #include <string>
-#include <thread>
 
 #include "bench/benchmarks.hpp"
 #include "bench/embree/embree_subject.hpp"
@@ -95,8 +94,9 @@ std::vector<EmbreeQuality> find_embree(const std::vector<std::string>& names) {
 
 void add_embree_context(const std::vector<EmbreeQuality>& wanted) {
     for (const EmbreeQuality quality : wanted)
-        benchmark::AddCustomContext(std::string("device embree-") + to_string(quality),
-                                    "Embree " RTC_VERSION_STRING ", quality " + std::string(to_string(quality)));
+        benchmark::AddCustomContext(
+            std::string("device embree-") + to_string(quality),
+            "Embree " RTC_VERSION_STRING ", quality " + std::string(to_string(quality)));
 }
 
 void register_embree(Bench& bench, const SceneCase& scene) {

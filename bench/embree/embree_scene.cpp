@@ -30,8 +30,8 @@ void MemoryMonitor::add(std::int64_t bytes) noexcept {
 
 EmbreeScene::EmbreeScene(const Scene& scene, EmbreeQuality quality) : device_(rtcNewDevice("")) {
     if (!device_)
-        throw Error(ErrorCategory::Unsupported, "rtcNewDevice gives no device, but error " +
-                                                    std::to_string(rtcGetDeviceError(nullptr)));
+        throw Error(ErrorCategory::Unsupported,
+                    "rtcNewDevice gives no device, but error " + std::to_string(rtcGetDeviceError(nullptr)));
     rtcSetDeviceMemoryMonitorFunction(device_.get(), count_bytes, memory_.get());
     geometry_.reset(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
     check("rtcNewGeometry");

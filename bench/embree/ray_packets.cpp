@@ -92,7 +92,8 @@ void RayPackets::any_hit(const EmbreeScene& scene, ThreadPool& pool) {
 }
 
 std::vector<Hit> RayPackets::hits() const {
-    std::vector<Hit> all(ray_count_, {std::numeric_limits<float>::infinity(), 0, 0, SETKA_NO_HIT, SETKA_NO_HIT});
+    std::vector<Hit> all(ray_count_,
+                         {std::numeric_limits<float>::infinity(), 0, 0, SETKA_NO_HIT, SETKA_NO_HIT});
     for (std::size_t i = 0; i < ray_count_; ++i) {
         const Hits& packet = hits_[i / width];
         const std::size_t lane = i % width;

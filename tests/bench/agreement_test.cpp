@@ -65,7 +65,8 @@ TEST(Agreement, OneRayInTenThousandIsTolerated) {
         FAIL() << "nothing was thrown";
     } catch (const Mismatch& mismatch) {
         EXPECT_STREQ(mismatch.what(),
-                     "bunny on embree/low, rays primary: 300 of 1000000 rays disagree with setka's; up to 100 are put down "
+                     "bunny on embree/low, rays primary: 300 of 1000000 rays disagree with setka's; up to "
+                     "100 are put down "
                      "to rounding; it is not timed");
     }
 }

@@ -21,7 +21,8 @@ TEST(ThreadPool, EveryElementIsVisitedOnceInEachBatch) {
             EXPECT_LE(last - first, 7u);
             for (std::size_t i = first; i < last; ++i) ++visits[i];
         });
-        EXPECT_TRUE(std::ranges::all_of(visits, [](const auto& n) { return n == 1; })) << count << " elements";
+        EXPECT_TRUE(std::ranges::all_of(visits, [](const auto& n) { return n == 1; }))
+            << count << " elements";
     }
     EXPECT_EQ(started, 3);
 }
