@@ -23,4 +23,20 @@ TEST(Measure, QuartileDistanceIsThatOfTheMiddleHalf) {
     EXPECT_EQ(quartile_distance({9, 8, 7, 6, 5, 4, 3, 2, 1}), 4);  // 3 to 7
 }
 
+TEST(Measure, HostWorkIsRunOnceMoreThanItIsTimed) {
+    int runs = 0;
+    const auto time = setka::workload::measure(5, [&] {
+        const setka::workload::Stopwatch watch;
+        // The first run takes longest, and does not count.
+        while (watch.elapsed_ms() < (runs == 0 ? 200 : 2)) continue;
+        ++runs;
+    });
+    EXPECT_EQ(runs, 6);
+    EXPECT_EQ(time.repeats, 5u);
+    EXPECT_GE(time.wall_ms, 2);
+    EXPECT_LT(time.wall_ms, 200);
+    EXPECT_EQ(time.device_ms, 0);
+    EXPECT_TRUE(time.stages.empty());
+}
+
 }  // namespace
