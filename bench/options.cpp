@@ -71,7 +71,7 @@ constexpr Option own_options[] = {
     {"--devices",
      "ids with commas, each with a /shape if wanted: cuda:0/library, opencl:0, embree/low; default: all",
      [](Options& o, const std::string& name, const std::string& value) { o.devices = split(name, value); }},
-    {"--density", "cells a triangle of the grids that are timed, with commas if several; default: 4",
+    {"--density", "cells a triangle of the grids that are timed, with commas if several; default: 8",
      [](Options& o, const std::string& name, const std::string& value) {
          o.densities.clear();
          for (const std::string& density : split(name, value))

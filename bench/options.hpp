@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "setka/grid.hpp"
 #include "setka/tracer.hpp"
 
 namespace setka::bench {
@@ -17,7 +18,7 @@ struct Options {
     std::filesystem::path golden;        ///< the file of golden digests
     bool golden_was_named = false;       ///< then the file has to be there
     std::vector<std::string> devices;    ///< "id" or "id/shape"; empty: every device
-    std::vector<float> densities{4};     ///< of the grids that are timed
+    std::vector<float> densities{GridOptions{}.density};  ///< of the grids that are timed
     std::uint32_t size = 1024;           ///< rays along each side of the square picture
     std::vector<GridStep> steps{GridStep::Dda, GridStep::BranchFree};
     std::vector<std::uint32_t> elements{1u << 16, 1u << 20, 1u << 24};  ///< sizes of scan, sort and reduce

@@ -19,7 +19,7 @@ enum class CellTables {
 
 struct GridOptions {
     /// The paper's lambda: cells per triangle, from 1e-6 to 1e6. Denser grids trace fewer triangles through more cells.
-    float density = 4;
+    float density = 8;
     /// The most cells along one axis, from 1 to 4096.
     std::uint32_t max_cells_per_axis = 2048;
     CellTables cell_tables = CellTables::Scatter;
