@@ -29,16 +29,79 @@ SK_KERNEL void blocks_apply(sk_u32 n, sk_u32 elements, sk_u32 groups, SK_GLOBAL 
     sk_blocks_apply(scratch, pair_scratch, n, elements, groups, sums, blocks);
 }
 
-SK_KERNEL void blocks_count(sk_u32 n, SK_GLOBAL const sk_u32* counters, SK_GLOBAL sk_block* blocks,
+SK_KERNEL void blocks_count(sk_u32 n, sk_u32 alone, SK_GLOBAL const sk_u32* counters, SK_GLOBAL sk_block* blocks,
                             SK_GLOBAL sk_u32* totals) {
     const sk_u32 b = sk_global_id();
-    if (b < n) sk_count_block(b, counters, blocks, totals);
+    if (b < n) sk_count_block(b, alone, counters, blocks, totals);
+}
+
+SK_KERNEL void blocks_lay_out(sk_u32 n, sk_u32 alone, SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_block* blocks,
+                              SK_GLOBAL sk_cell_list* cells, SK_GLOBAL sk_piece* pieces, SK_GLOBAL sk_u32* totals) {
+    const sk_u32 b = sk_global_id();
+    if (b < n) sk_lay_out_block(b, alone, counters, blocks, cells, pieces, totals);
 }
 
 SK_KERNEL void blocks_group(sk_u32 n, SetkaGridHeader grid, SK_GLOBAL const sk_block* blocks,
                             SK_GLOBAL sk_u32* groups) {
     const sk_u32 group = sk_global_id();
     if (group < n) sk_group_blocks(group, grid, blocks, groups);
+}
+
+/* A work-item for each `run` triangles, elements first to n - 1. */
+SK_KERNEL void scatter_count(sk_u32 n, sk_u32 first, sk_u32 run, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
+                             SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_reach* reaches, sk_u32 capacity,
+                             SK_GLOBAL sk_u32* rows, SK_GLOBAL sk_u32* totals) {
+    const sk_u32 i = first + sk_global_id();
+    if (i < n)
+        sk_count_triangles(i * run, sk_min_u32(i * run + run, grid.triangle_count), grid,
+                           sk_make_scatter(triangles, counters, (SK_GLOBAL sk_u32*)0), reaches,
+                           sk_make_row_list(rows, totals, capacity));
+}
+
+/* A work-item a triangle. */
+SK_KERNEL void scatter_place(sk_u32 n, sk_u32 first, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
+                             SK_GLOBAL sk_u32* counters, SK_GLOBAL const sk_reach* reaches,
+                             SK_GLOBAL sk_u32* references) {
+    const sk_u32 i = first + sk_global_id();
+    if (i < n) sk_place_triangle(i, grid, sk_make_scatter(triangles, counters, references), reaches);
+}
+
+/* A work-item for every step-th row of large triangles, elements first to n - 1. */
+SK_KERNEL void scatter_count_rows(sk_u32 n, sk_u32 first, sk_u32 step, SetkaGridHeader grid,
+                                  SK_GLOBAL const float* triangles, SK_GLOBAL sk_u32* counters, sk_u32 capacity,
+                                  SK_GLOBAL sk_u32* rows, SK_GLOBAL sk_u32* totals) {
+    const sk_u32 r = first + sk_global_id();
+    if (r < n)
+        sk_take_listed(r, step, grid, sk_make_scatter(triangles, counters, (SK_GLOBAL sk_u32*)0),
+                       sk_make_row_list(rows, totals, capacity), 0);
+}
+
+SK_KERNEL void scatter_place_rows(sk_u32 n, sk_u32 first, sk_u32 step, SetkaGridHeader grid,
+                                  SK_GLOBAL const float* triangles, SK_GLOBAL sk_u32* counters, sk_u32 capacity,
+                                  SK_GLOBAL sk_u32* rows, SK_GLOBAL sk_u32* totals, SK_GLOBAL sk_u32* references) {
+    const sk_u32 r = first + sk_global_id();
+    if (r < n)
+        sk_take_listed(r, step, grid, sk_make_scatter(triangles, counters, references),
+                       sk_make_row_list(rows, totals, capacity), 1);
+}
+
+/* A work-item a list. */
+SK_KERNEL void lists_sort(sk_u32 n, sk_u32 alone, SK_GLOBAL const sk_cell_list* cells, SK_GLOBAL sk_u32* references) {
+    const sk_u32 r = sk_global_id();
+    if (r < n) sk_sort_list(r, alone, cells, references);
+}
+
+/* A work-item a number of a long list, for both. */
+SK_KERNEL void lists_rank(sk_u32 n, SK_GLOBAL const sk_piece* pieces, SK_GLOBAL const sk_u32* references,
+                          SK_GLOBAL sk_u32* scratch) {
+    const sk_u32 e = sk_global_id();
+    if (e < n) sk_rank_in_piece(e, pieces, references, scratch);
+}
+
+SK_KERNEL void lists_merge(sk_u32 n, sk_u32 width, sk_u32 is_last, SK_GLOBAL const sk_piece* pieces,
+                           SK_GLOBAL const sk_u32* from, SK_GLOBAL sk_u32* to, SK_GLOBAL sk_u32* references) {
+    const sk_u32 e = sk_global_id();
+    if (e < n) sk_merge_runs(e, width, is_last, pieces, from, to, references);
 }
 
 SK_KERNEL void import_blocks(sk_u32 n, SetkaGridHeader grid, SK_GLOBAL const sk_u32* counts,

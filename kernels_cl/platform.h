@@ -7,7 +7,7 @@
 #pragma OPENCL FP_CONTRACT OFF
 
 #define SK_KERNEL __kernel
-#define SK_FUNCTION static inline
+#define SK_FUNCTION static inline __attribute__((always_inline))
 #define SK_GLOBAL __global
 #define SK_LOCAL __local
 #define SK_LOCAL_STORAGE __local
@@ -43,6 +43,7 @@ typedef ulong sk_u64;
 #define sk_floor(f) floor(f)
 #define sk_popcount(u) popcount(u)
 #define sk_atomic_min(p, v) atomic_min(p, v)
+#define sk_atomic_max(p, v) atomic_max(p, v)
 #define sk_atomic_add(p, v) atomic_add(p, v)
 #define sk_atomic_or(p, v) atomic_or(p, v)
 

@@ -31,6 +31,7 @@ typedef unsigned long long sk_u64;
 #define sk_floor(f) floorf(f)
 #define sk_popcount(u) ((sk_u32)__popc(u))
 #define sk_atomic_min(p, v) atomicMin(p, v)
+#define sk_atomic_max(p, v) atomicMax(p, v)
 #define sk_atomic_add(p, v) atomicAdd(p, v)
 #define sk_atomic_or(p, v) atomicOr(p, v)
 

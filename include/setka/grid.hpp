@@ -17,6 +17,8 @@ enum class CellTables {
     BinarySearch,   ///< the same, but each cell searches for its first and last pair, as in section 2.3 of the paper
 };
 
+[[nodiscard]] const char* to_string(CellTables tables) noexcept;
+
 struct GridOptions {
     /// The paper's lambda: cells per triangle, from 1e-6 to 1e6. Denser grids trace fewer triangles through more cells.
     float density = 8;
@@ -41,12 +43,14 @@ struct GridResolution {
 [[nodiscard]] GridResolution grid_resolution(const Bounds& bounds, std::uint32_t triangle_count,
                                              const GridOptions& options);
 
+struct GridCount;  // opaque to users
+
 /// A grid that is counted but not yet written: every size is known, nothing large is allocated.
 class GridPlan {
   public:
     [[nodiscard]] const ::SetkaGridHeader& header() const noexcept { return header_; }
     [[nodiscard]] std::uint64_t pair_count() const noexcept { return header_.reference_count; }
-    /// Rows of cells that triangles reach into: the work-items of counting and writing.
+    /// Rows of cells that are work-items of their own: with CellTables::Scatter those of large triangles, else all.
     [[nodiscard]] std::uint64_t row_count() const noexcept { return row_count_; }
     /// Bytes of the finished grid's sections.
     [[nodiscard]] std::uint64_t table_bytes() const noexcept { return table_bytes_; }
@@ -57,13 +61,10 @@ class GridPlan {
     friend class UniformGridBuilder;
     ::SetkaGridHeader header_{};
     std::uint64_t row_count_ = 0;
-    std::uint32_t cell_list_count_ = 0;  ///< cells that are not empty
     std::uint64_t table_bytes_ = 0;
     std::uint64_t peak_bytes_ = 0;
     WorldGeometry geometry_;
-    Buffer<std::uint32_t> row_triangles_;
-    Buffer<std::uint32_t> row_starts_;
-    Buffer<std::uint32_t> row_offsets_;
+    std::shared_ptr<GridCount> count_;
 };
 
 /// The paper's tables, as laid down at SetkaGridHeader: 8 bytes a cell, and the references.
@@ -116,7 +117,7 @@ class GridBuilder {
     /// Transform, bounds, resolution and count. Throws InvalidArgument for options out of range, InvalidData for a triangle
     /// that is not finite in world space, OutOfMemory if the finished build would not fit the device's budget.
     [[nodiscard]] virtual GridPlan plan(Queue& queue, const DeviceScene& scene) const = 0;
-    /// Emit, sort and cell tables.
+    /// The tables.
     [[nodiscard]] virtual Grid build(Queue& queue, GridPlan plan) const = 0;
     [[nodiscard]] Grid build(Queue& queue, const DeviceScene& scene) const { return build(queue, plan(queue, scene)); }
 };

@@ -50,9 +50,13 @@ std::uint32_t group_count(const ::SetkaGridHeader& header) noexcept {
            in_fours(in_fours(header.dims[2]));
 }
 
+std::uint64_t slot_count(const std::uint32_t (&dims)[3]) noexcept {
+    return std::uint64_t(in_fours(dims[0])) * in_fours(dims[1]) * in_fours(dims[2]) * SK_BLOCK_CELLS;
+}
+
 Buffer<std::uint32_t> make_totals(Queue& queue) {
     auto totals = queue.make_buffer<std::uint32_t>(SK_TOTALS, "totals of blocks");
-    queue.impl().fill(*totals.memory(), ~0u, totals.size_bytes());
+    queue.impl().fill(*totals.memory(), 0, totals.size_bytes());
     return totals;
 }
 
@@ -60,7 +64,11 @@ BlockTotals read_totals(Queue& queue, const Buffer<std::uint32_t>& totals) {
     const auto words = queue.download(totals);
     return {words[SK_TOTAL_CELLS],
             words[SK_TOTAL_PAIRS_LOW] | std::uint64_t(words[SK_TOTAL_PAIRS_HIGH]) << 32,
-            ~words[SK_TOTAL_LONGEST]};
+            words[SK_TOTAL_LONGEST],
+            words[SK_TOTAL_ROWS],
+            words[SK_TOTAL_LONG],
+            words[SK_TOTAL_FOUND],
+            words[SK_TOTAL_PIECES]};
 }
 
 std::uint64_t block_sums_bytes(const Device& device, std::uint32_t blocks) {

@@ -13,6 +13,9 @@ namespace setka {
 [[nodiscard]] std::uint32_t block_count(const ::SetkaGridHeader& header) noexcept;
 [[nodiscard]] std::uint32_t group_count(const ::SetkaGridHeader& header) noexcept;
 
+/// Cells of all blocks, those outside the grid included.
+[[nodiscard]] std::uint64_t slot_count(const std::uint32_t (&dims)[3]) noexcept;
+
 /// Words of a block, a group and a cell's record.
 inline constexpr std::uint64_t block_words = 4, group_words = 2, cell_words = 2;
 
@@ -21,6 +24,10 @@ struct BlockTotals {
     std::uint32_t cells = 0;         ///< that are not empty
     std::uint64_t pairs = 0;
     std::uint32_t longest_list = 0;  ///< 0 if none is longer than SK_LONG_LIST
+    // Of large triangles, where these were counted.
+    std::uint32_t rows = 0;
+    std::uint32_t long_rows = 0, found_long_rows = 0;
+    std::uint32_t pieces = 0;        ///< of lists that one work-item does not sort alone
 };
 
 /// Words of kernels to the host: device/grid/limits.h.

@@ -20,6 +20,12 @@ void check_dims(const ::SetkaGridHeader& header) {
 
 }  // namespace
 
+const char* to_string(CellTables tables) noexcept {
+    return tables == CellTables::Scatter         ? "scatter"
+           : tables == CellTables::RunBoundaries ? "run-boundaries"
+                                                 : "binary-search";
+}
+
 Grid::Grid(Queue& queue, WorldGeometry geometry, const ::SetkaGridHeader& header, const GridTables& tables)
     : Structure(std::move(geometry)), header_(header) {
     check_dims(header);

@@ -162,8 +162,7 @@ void print_findings(const CompareReport& report) {
     for (const GridStep step : work.steps) steps.push_back(workload::to_string(step));
     return {{"density", work.grid.density},
             {"max_cells_per_axis", work.grid.max_cells_per_axis},
-            {"cell_tables",
-             work.grid.cell_tables == CellTables::RunBoundaries ? "run-boundaries" : "binary-search"},
+            {"cell_tables", to_string(work.grid.cell_tables)},
             {"viewpoint", workload::to_string(work.viewpoint)},
             {"rays_size", work.rays_size},
             {"image_width", work.image_size.first},

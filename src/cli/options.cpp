@@ -164,8 +164,10 @@ void add_grid_options(CLI::App& app, GridOptions& options) {
         ->group(group);
     add_choice<CellTables>(
         app, "--cell-tables", options.cell_tables,
-        {{"run-boundaries", CellTables::RunBoundaries}, {"binary-search", CellTables::BinarySearch}},
-        "how the cell tables are found; the result is the same")
+        {{"scatter", CellTables::Scatter},
+         {"run-boundaries", CellTables::RunBoundaries},
+         {"binary-search", CellTables::BinarySearch}},
+        "how the cells' lists come about; the result is the same")
         ->group(group);
 }
 

@@ -19,8 +19,8 @@
  *   sk_float_bits(f) sk_bits_float(u)                            bit casts
  *   sk_sqrt(f) sk_floor(f)                                       correctly rounded
  *   sk_popcount(u)                                               how many bits of a sk_u32 are set
- *   sk_atomic_min(p, v) sk_atomic_add(p, v) sk_atomic_or(p, v)   on sk_u32 in global or local memory, return what was there;
- *                                                                order-free uses only
+ *   sk_atomic_min(p, v) sk_atomic_max(p, v) sk_atomic_add(p, v)  on sk_u32 in global or local memory, return what was there;
+ *   sk_atomic_or(p, v)                                           order-free uses only
  *
  * Not allowed: fma, mad, min, max, clamp, rsqrt, dot, cross, normalize, pow, exp, log, sin, float3, doubles, sub-groups,
  * float atomics, recursion, `return` before a barrier, a float to integer cast of a value that was not range-checked.

@@ -54,6 +54,11 @@ static inline sk_u32 sk_atomic_min(sk_u32* target, sk_u32 value) {
     *target = value < before ? value : before;
     return before;
 }
+static inline sk_u32 sk_atomic_max(sk_u32* target, sk_u32 value) {
+    const sk_u32 before = *target;
+    *target = value > before ? value : before;
+    return before;
+}
 static inline sk_u32 sk_atomic_add(sk_u32* target, sk_u32 value) {
     const sk_u32 before = *target;
     *target = before + value;

@@ -133,7 +133,7 @@ TEST_P(EveryStep, LeavesTheLibraryUsable) {
 }
 
 class EveryPrimitive : public EveryStep {};
-SETKA_ON_EVERY_DEVICE_AND(EveryPrimitive, (std::vector<std::string>{"build_run_boundaries",
+SETKA_ON_EVERY_DEVICE_AND(EveryPrimitive, (std::vector<std::string>{"build_scatter", "build_run_boundaries",
                                                                     "build_binary_search", "render_shaded"}));
 
 /// The portable primitives have other scratch buffers than a vendor's library, and groups others than single

@@ -125,6 +125,7 @@ const std::vector<Work>& all_work() {
                  .add(std::vector{plan.pair_count(), plan.row_count(), plan.table_bytes()})
                  .get();
          }},
+        building("build_scatter", setka::CellTables::Scatter),
         building("build_run_boundaries", setka::CellTables::RunBoundaries),
         building("build_binary_search", setka::CellTables::BinarySearch),
         {"brute_force",

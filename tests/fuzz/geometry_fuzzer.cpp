@@ -24,9 +24,12 @@ void check_saving(setka::Queue& queue, const setka::Grid& grid) {
 
 void check_scene(setka::Queue& queue, const setka::DeviceScene& scene, const setka::Grid& grid,
                  const oracle::World& world, const setka::GridOptions& options, fuzz::Input& input) {
-    fuzz::check(support::same_tables(oracle::make_tables(world, options), support::download(queue, grid)),
-                "tables");
-    check_saving(queue, grid);
+    // The paper's tables may be more than the device may hold beside the grid.
+    (void)fuzz::succeeds({ErrorCategory::OutOfMemory}, [&] {
+        fuzz::check(support::same_tables(oracle::make_tables(world, options), support::download(queue, grid)),
+                    "tables");
+        check_saving(queue, grid);
+    });
     fuzz::Queries queries;
     queries.rays = fuzz::read_rays(input, 12, queue.download(grid.geometry().triangles));
     queries.skip = fuzz::read_skip(input, queries.rays.size());

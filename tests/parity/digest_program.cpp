@@ -94,11 +94,11 @@ class AllKernels {
         const auto build = [&](setka::CellTables tables) {
             return setka::make_grid_builder({.density = 2, .cell_tables = tables})->build(queue_, on_device);
         };
-        const setka::Grid grid = build(setka::CellTables::RunBoundaries);
-        print_line(name + " run_boundaries", grid.digest(queue_).to_string());
+        const setka::Grid grid = build(setka::CellTables::Scatter);
+        print_line(name + " scatter", grid.digest(queue_).to_string());
         print_all_hits(name + " grid", grid, rays);
-        print_line(name + " binary_search",
-                   build(setka::CellTables::BinarySearch).digest(queue_).to_string());
+        for (const auto tables : {setka::CellTables::RunBoundaries, setka::CellTables::BinarySearch})
+            print_line(name + " " + to_string(tables), build(tables).digest(queue_).to_string());
         for (const auto step : {setka::GridStep::Dda, setka::GridStep::BranchFree})
             print_rays(name + (step == setka::GridStep::Dda ? " dda" : " branch_free"), grid,
                        setka::Tracer({.step = step}), rays);

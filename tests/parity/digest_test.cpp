@@ -29,12 +29,12 @@ TEST_P(Digests, DoNotDependOnTheLaunch) {
         for (const support::LaunchShape& shape : shapes) {
             setka::Queue queue = device(shape.options).make_queue();
             const setka::DeviceScene device_scene(queue, scene);
-            for (const auto tables : {setka::CellTables::RunBoundaries, setka::CellTables::BinarySearch}) {
+            for (const setka::CellTables tables : support::all_cell_tables) {
                 const auto builder = setka::make_grid_builder({.density = density, .cell_tables = tables});
                 const std::string digest = builder->build(queue, device_scene).digest(queue).to_string();
                 if (first.empty()) first = digest;
                 ASSERT_EQ(digest, first)
-                    << shape.name << (tables == setka::CellTables::BinarySearch ? ", binary search" : "");
+                    << shape.name << ", " << to_string(tables);
             }
         }
         EXPECT_EQ(first.size(), 32u);

@@ -7,6 +7,7 @@
 #include "support/compare.hpp"
 #include "support/devices.hpp"
 #include "support/scenes.hpp"
+#include "support/shapes.hpp"
 
 namespace {
 
@@ -29,7 +30,7 @@ TEST_P(FileTables, EqualTheOraclesAndHoldEveryOverlapAndLittleElse) {
         SCOPED_TRACE("density " + std::to_string(density));
         setka::GridOptions options{.density = density};
         const oracle::Tables expected = oracle::make_tables(world, options);
-        for (const auto tables : {setka::CellTables::RunBoundaries, setka::CellTables::BinarySearch}) {
+        for (const setka::CellTables tables : support::all_cell_tables) {
             options.cell_tables = tables;
             const setka::Grid grid = setka::make_grid_builder(options)->build(queue, device_scene);
             ASSERT_TRUE(support::same_tables(expected, support::download(queue, grid)));

@@ -34,8 +34,8 @@ TEST_P(Plan, IsExact) {
         setka::Queue queue = opened.make_queue();
         const setka::DeviceScene device_scene(queue, scene);
         for (const float density : {0.5f, 4.0f, 16.0f})
-            for (const auto tables : {setka::CellTables::RunBoundaries, setka::CellTables::BinarySearch}) {
-                SCOPED_TRACE(shape.name + ", density " + std::to_string(density));
+            for (const setka::CellTables tables : support::all_cell_tables) {
+                SCOPED_TRACE(shape.name + ", density " + std::to_string(density) + ", " + to_string(tables));
                 const std::uint64_t before = opened.memory_in_use_bytes();
                 opened.reset_peak_memory();
                 const auto builder = setka::make_grid_builder({.density = density, .cell_tables = tables});

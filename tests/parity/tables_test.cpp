@@ -8,6 +8,7 @@
 #include "support/compare.hpp"
 #include "support/devices.hpp"
 #include "support/scenes.hpp"
+#include "support/shapes.hpp"
 
 namespace {
 
@@ -28,10 +29,9 @@ TEST_P(Tables, EqualTheOracles) {
     for (const float density : {0.05f, 0.5f, 4.0f, 16.0f}) {
         setka::GridOptions options{.density = density};
         const oracle::Tables expected = oracle::make_tables(world, options);
-        for (const auto tables : {setka::CellTables::RunBoundaries, setka::CellTables::BinarySearch}) {
+        for (const setka::CellTables tables : support::all_cell_tables) {
             SCOPED_TRACE(
-                "density " + std::to_string(density) +
-                (tables == setka::CellTables::BinarySearch ? ", binary search" : ", run boundaries"));
+                "density " + std::to_string(density) + ", " + to_string(tables));
             options.cell_tables = tables;
             const setka::Grid grid = setka::make_grid_builder(options)->build(queue, device_scene);
             ASSERT_TRUE(support::same_tables(expected, support::download(queue, grid)));

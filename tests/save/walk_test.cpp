@@ -33,7 +33,7 @@ class WalkedTables {
         blocks_.resize(std::size_t(dims.x) * dims.y * dims.z);
         groups_.resize(std::size_t(group_dims.x) * group_dims.y * group_dims.z * 2);
         references_.resize(model.references.size());
-        sk_u32 totals[SK_TOTALS] = {~0u, ~0u, ~0u, ~0u}, cells = 0, pairs = 0;
+        sk_u32 totals[SK_TOTALS] = {}, cells = 0, pairs = 0;
         for (sk_u32 b = 0; b < blocks_.size(); ++b) {
             sk_import_block(b, model.header, model.counts.data(), blocks_.data(), totals);
             const sk_u32 of_block = blocks_[b].spare;

@@ -9,10 +9,15 @@
 #include <vector>
 
 #include "setka/device.hpp"
+#include "setka/grid.hpp"
 #include "support/devices.hpp"
 #include "support/sizes.hpp"
 
 namespace support {
+
+/// Every way to a grid's tables.
+inline constexpr setka::CellTables all_cell_tables[] = {
+    setka::CellTables::Scatter, setka::CellTables::RunBoundaries, setka::CellTables::BinarySearch};
 
 struct LaunchShape {
     std::string name;

@@ -24,8 +24,9 @@ SK_FUNCTION sk_u32 sk_slot_part(sk_slot_stride stride, sk_u32 index) {
 
 SK_FUNCTION sk_slot_stride sk_slot_stride_of(SetkaGridHeader grid, sk_u32 axis) {
     const sk_dims blocks = sk_block_dims(sk_cell_dims(grid));
+    const sk_u32 row = SK_BLOCK_CELLS * blocks.x, layer = row * blocks.y;
     sk_slot_stride r;
-    r.block = axis == 0u ? SK_BLOCK_CELLS : axis == 1u ? SK_BLOCK_CELLS * blocks.x : SK_BLOCK_CELLS * blocks.x * blocks.y;
+    r.block = axis == 0u ? SK_BLOCK_CELLS : axis == 1u ? row : layer;
     r.cell = 1u << (2u * axis);
     return r;
 }
@@ -48,7 +49,7 @@ typedef struct sk_interval {
 /** No plane: any slab of it spans everything. */
 #define SK_EVERYTHING 1e30f
 
-SK_FUNCTION sk_u32 sk_cell(float f, sk_u32 dim) { return f >= (float)dim ? dim - 1u : f > 0.0f ? (sk_u32)f : 0u; }
+SK_FUNCTION sk_u32 sk_cell(float f, sk_u32 dim) { return f >= (float)dim ? dim - 1u : f > 0.0f ? (sk_u32)(sk_i32)f : 0u; }
 
 SK_FUNCTION float sk_min_of3(sk_vec3 a) { return sk_min(sk_min(a.x, a.y), a.z); }
 SK_FUNCTION float sk_max_of3(sk_vec3 a) { return sk_max(sk_max(a.x, a.y), a.z); }
@@ -63,11 +64,28 @@ SK_FUNCTION sk_vec3 sk_edge_slopes(sk_vec3 p, sk_vec3 q) {
     return sk_make3((q.y - q.x) / (p.y - p.x), (q.z - q.y) / (p.z - p.y), (q.x - q.z) / (p.x - p.z));
 }
 
-SK_FUNCTION sk_cell_triangle sk_load_cell_triangle(SetkaGridHeader grid, SK_GLOBAL const float* triangle) {
+/** a or b: without a branch, as a choice of structs may have one. */
+SK_FUNCTION sk_vec3 sk_select3(int first, sk_vec3 a, sk_vec3 b) {
+    return sk_make3(first ? a.x : b.x, first ? a.y : b.y, first ? a.z : b.z);
+}
+
+/** A triangle's vertices in cell units. */
+typedef struct sk_cell_points {
+    sk_vec3 p0, p1, p2;
+} sk_cell_points;
+
+SK_FUNCTION sk_cell_points sk_load_cell_points(SetkaGridHeader grid, SK_GLOBAL const float* triangle) {
+    sk_cell_points r;
+    r.p0 = sk_to_cells(grid, sk_load3(triangle));
+    r.p1 = sk_to_cells(grid, sk_load3(triangle + 3));
+    r.p2 = sk_to_cells(grid, sk_load3(triangle + 6));
+    return r;
+}
+
+/** No branch: so that several can be made side by side. */
+SK_FUNCTION sk_cell_triangle sk_make_cell_triangle(SetkaGridHeader grid, sk_cell_points points) {
     sk_cell_triangle r;
-    const sk_vec3 p0 = sk_to_cells(grid, sk_load3(triangle));
-    const sk_vec3 p1 = sk_to_cells(grid, sk_load3(triangle + 3));
-    const sk_vec3 p2 = sk_to_cells(grid, sk_load3(triangle + 6));
+    const sk_vec3 p0 = points.p0, p1 = points.p1, p2 = points.p2;
     const sk_vec3 e1 = sk_sub(p1, p0), e2 = sk_sub(p2, p0), n = sk_cross3(e1, e2);
     const float nx = sk_abs(n.x), ny = sk_abs(n.y), nz = sk_abs(n.z);
     const sk_vec3 x = sk_make3(p0.x, p1.x, p2.x);
@@ -81,9 +99,9 @@ SK_FUNCTION sk_cell_triangle sk_load_cell_triangle(SetkaGridHeader grid, SK_GLOB
     const float nv = along_z ? n.y : n.z;
     const float nw = along_z ? n.z : along_y ? n.y : n.x;
     const float aw = sk_abs(nw);
-    r.u = along_x ? y : x;
-    r.v = along_z ? y : z;
-    r.w = along_z ? z : along_y ? y : x;
+    r.u = sk_select3(along_x, y, x);
+    r.v = sk_select3(along_z, y, z);
+    r.w = sk_select3(along_z, z, sk_select3(along_y, y, x));
     r.dim_u = along_x ? grid.dims[1] : grid.dims[0];
     r.dim_v = along_z ? grid.dims[1] : grid.dims[2];
     r.dim_w = along_z ? grid.dims[2] : along_y ? grid.dims[1] : grid.dims[0];
@@ -96,19 +114,21 @@ SK_FUNCTION sk_cell_triangle sk_load_cell_triangle(SetkaGridHeader grid, SK_GLOB
     r.u_over_v = sk_edge_slopes(r.v, r.u);
     r.w_over_v = sk_edge_slopes(r.v, r.w);
     r.w_over_u = sk_edge_slopes(r.u, r.w);
-    if (aw > 1e-30f) {
-        const float size1 = sk_largest(e1), size2 = sk_largest(e2);
-        const float error = (((size1 * size2) / aw) * 0x1p-18f) * (sk_max(size1, size2) + 2.0f);
-        r.slope_u = -nu / nw;
-        r.slope_v = -nv / nw;
-        r.half_slab = (0.5f + grid.tolerance) * (sk_abs(r.slope_u) + sk_abs(r.slope_v)) + error;
-    } else {
-        /* A sliver without a usable normal: its projections alone bound it. */
-        r.slope_u = 0.0f;
-        r.slope_v = 0.0f;
-        r.half_slab = SK_EVERYTHING;
+    {
+        /* A sliver without a usable normal is bounded by its projections alone. */
+        const int has_plane = aw > 1e-30f;
+        const float divisor = has_plane ? nw : 1.0f, size1 = sk_largest(e1), size2 = sk_largest(e2);
+        const float error = (((size1 * size2) / sk_abs(divisor)) * 0x1p-18f) * (sk_max(size1, size2) + 2.0f);
+        r.slope_u = has_plane ? -nu / divisor : 0.0f;
+        r.slope_v = has_plane ? -nv / divisor : 0.0f;
+        r.half_slab = has_plane ? (0.5f + grid.tolerance) * (sk_abs(r.slope_u) + sk_abs(r.slope_v)) + error
+                                : SK_EVERYTHING;
     }
     return r;
+}
+
+SK_FUNCTION sk_cell_triangle sk_load_cell_triangle(SetkaGridHeader grid, SK_GLOBAL const float* triangle) {
+    return sk_make_cell_triangle(grid, sk_load_cell_points(grid, triangle));
 }
 
 /** Widens `interval` by the part of the edge (pa, qa) - (pb, qb) whose p lies in [start, end]. */
@@ -119,11 +139,11 @@ SK_FUNCTION sk_interval sk_clip_edge(sk_interval interval, float pa, float qa, f
     const float p_high = swap ? pa : pb, q_high = swap ? qa : qb;
     const float first = p_low >= start ? q_low : q_low + (start - p_low) * slope;
     const float second = p_high <= end ? q_high : q_low + (end - p_low) * slope;
-    const int meets = !(p_high < start || p_low > end);
+    const int meets = (int)(p_high >= start) & (int)(p_low <= end);
     const float low = sk_min(first, second), high = sk_max(first, second);
     sk_interval r;
-    r.low = meets && low < interval.low ? low : interval.low;
-    r.high = meets && high > interval.high ? high : interval.high;
+    r.low = (meets & (low < interval.low)) ? low : interval.low;
+    r.high = (meets & (high > interval.high)) ? high : interval.high;
     return r;
 }
 

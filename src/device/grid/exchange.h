@@ -32,7 +32,7 @@ SK_FUNCTION void sk_import_block(sk_u32 b, SetkaGridHeader grid, SK_GLOBAL const
     block.first = 0u;
     block.spare = pairs >> 32 != 0u ? 0xffffffffu : (sk_u32)pairs;
     blocks[b] = block;
-    if (longest > SK_LONG_LIST) sk_atomic_min(totals + SK_TOTAL_LONGEST, ~longest);
+    if (longest > SK_LONG_LIST) sk_atomic_max(totals + SK_TOTAL_LONGEST, longest);
 }
 
 /** The records of block b's cells, after the scan; `spare` has served. */

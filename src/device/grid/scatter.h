@@ -1,20 +1,244 @@
 /* SPDX-License-Identifier: MIT */
 /**
  * How do triangles get into the lists of their cells without being sorted? They are counted in their cells, the lists are laid out
- * one behind the other, and each triangle takes the next free place of each of its cells; then every list is put in order.
+ * one behind the other, and each triangle takes the next free place of each of its cells. Which place that is depends on
+ * who comes first; what a list holds does not, and sort_lists.h puts it in order.
  */
 #ifndef SETKA_DEVICE_GRID_SCATTER_H
 #define SETKA_DEVICE_GRID_SCATTER_H
 
-#include "device/grid/cells.h"
-#include "device/grid/limits.h"
+#include "device/grid/reach.h"
+#include "device/grid/sort_lists.h"
 
-/** Block b from the counters of its cells; `spare` becomes the number of its pairs. */
-SK_FUNCTION void sk_count_block(sk_u32 b, SK_GLOBAL const sk_u32* counters, SK_GLOBAL sk_block* blocks,
+/** What the kernels of one build share. A counter for each slot; later the next free place of its list. */
+typedef struct sk_scatter {
+    SK_GLOBAL const float* triangles;
+    SK_GLOBAL sk_u32* counters;
+    SK_GLOBAL sk_u32* references;
+} sk_scatter;
+
+SK_FUNCTION sk_scatter sk_make_scatter(SK_GLOBAL const float* triangles, SK_GLOBAL sk_u32* counters,
+                                       SK_GLOBAL sk_u32* references) {
+    sk_scatter r;
+    r.triangles = triangles;
+    r.counters = counters;
+    r.references = references;
+    return r;
+}
+
+/** Counts the triangle in the cell of a slot, or puts it into that cell's list. */
+SK_FUNCTION void sk_take(sk_scatter out, sk_u32 slot, sk_u32 triangle, const int place) {
+    const sk_u32 before = sk_atomic_add(out.counters + slot, 1u);
+    if (place) out.references[before] = triangle;
+}
+
+/** The same for every cell that the triangle reaches into in row j; how many these are. */
+SK_FUNCTION sk_u32 sk_take_row(SetkaGridHeader grid, sk_cell_triangle t, sk_u32 j, sk_scatter out, sk_u32 triangle,
+                               const int place) {
+    const sk_row row = sk_enter_row(grid, t, j);
+    const sk_u32 row_slot = sk_slot_part(t.slot_v, j);
+    sk_u32 count = 0u;
+    for (sk_u32 i = row.first; i <= row.last; ++i) {
+        const sk_column column = sk_enter_column(grid, t, row, i);
+        const sk_u32 slot = row_slot + sk_slot_part(t.slot_u, i);
+        for (sk_u32 k = column.first; k <= column.last; ++k)
+            sk_take(out, slot + sk_slot_part(t.slot_w, k), triangle, place);
+        if (column.first <= column.last) count += column.last - column.first + 1u;
+    }
+    return count;
+}
+
+/** The same for every row. */
+SK_FUNCTION void sk_take_rows(SetkaGridHeader grid, sk_scatter out, sk_u32 triangle, const int place) {
+    const sk_cell_triangle t = sk_load_cell_triangle(grid, out.triangles + (size_t)triangle * 9u);
+    const sk_u32 last = sk_last_row(grid, t);
+    for (sk_u32 j = sk_first_row(grid, t); j <= last; ++j) sk_take_row(grid, t, j, out, triangle, place);
+}
+
+/** The same for the cells of a mask. */
+SK_FUNCTION void sk_take_mask(SetkaGridHeader grid, sk_scatter out, sk_reach reach, sk_u32 triangle, const int place) {
+    const sk_slot_stride x = sk_slot_stride_of(grid, 0u), y = sk_slot_stride_of(grid, 1u), z = sk_slot_stride_of(grid, 2u);
+    const sk_u32 x0 = reach.corner_xy & 0xffffu, y0 = reach.corner_xy >> 16, z0 = reach.corner_z & 0xffffu;
+    for (sk_u64 rest = sk_reach_mask(reach); rest != 0u; rest &= rest - 1u) {
+        const sk_u32 bit = sk_bit_count((rest & (~rest + 1u)) - 1u);
+        const sk_u32 slot = sk_slot_part(x, x0 + (bit & 3u)) + sk_slot_part(y, y0 + (bit >> 2 & 3u)) +
+                            sk_slot_part(z, z0 + (bit >> 4));
+        sk_take(out, slot, triangle, place);
+    }
+}
+
+/** What is known of large triangles' rows: each a pair (triangle, row), `capacity` of them at most. */
+typedef struct sk_row_list {
+    SK_GLOBAL sk_u32* entries;
+    SK_GLOBAL sk_u32* totals;
+    sk_u32 capacity;
+} sk_row_list;
+
+SK_FUNCTION sk_row_list sk_make_row_list(SK_GLOBAL sk_u32* entries, SK_GLOBAL sk_u32* totals, sk_u32 capacity) {
+    sk_row_list r;
+    r.entries = entries;
+    r.totals = totals;
+    r.capacity = capacity;
+    return r;
+}
+
+/**
+ * Hands the rows of a large triangle to work-items of their own. Adds up the rows, and the cells that the triangle has at least, as
+ * many as along its longest axis; stops adding when there are too many for any grid.
+ */
+SK_FUNCTION void sk_list_rows(SetkaGridHeader grid, SK_GLOBAL const float* triangles, sk_u32 triangle, sk_u32 longest,
+                              sk_row_list list) {
+    const sk_cell_triangle t = sk_load_cell_triangle(grid, triangles + (size_t)triangle * 9u);
+    const sk_u32 first = sk_first_row(grid, t), count = sk_last_row(grid, t) - first + 1u;
+    if (*(volatile SK_GLOBAL sk_u32*)(list.totals + SK_TOTAL_LONG) < SK_MOST_LONG_ROWS)
+        sk_atomic_add(list.totals + SK_TOTAL_LONG, longest / SK_LONG_ROW);
+    if (*(volatile SK_GLOBAL sk_u32*)(list.totals + SK_TOTAL_ROWS) < SK_MOST_ROWS) {
+        const sk_u32 start = sk_atomic_add(list.totals + SK_TOTAL_ROWS, count);
+        for (sk_u32 k = 0u; k < count; ++k)
+            if (start + k < list.capacity) {
+                list.entries[2u * (size_t)(start + k)] = triangle;
+                list.entries[2u * (size_t)(start + k) + 1u] = first + k;
+            }
+    }
+}
+
+/** Counts triangle i in its cells, and keeps what it reaches for when it is placed; or lists the rows of a large one. */
+SK_FUNCTION void sk_count_triangle(sk_u32 i, sk_reach reach, SetkaGridHeader grid, sk_scatter out,
+                                   SK_GLOBAL sk_reach* reaches, sk_row_list list) {
+    reaches[i] = reach;
+    if (sk_reach_kind(reach) == SK_REACH_MASK) {
+        sk_take_mask(grid, out, reach, i, 0);
+    } else if (sk_reach_kind(reach) == SK_REACH_ROWS) {
+        sk_take_rows(grid, out, i, 0);
+    } else {
+        const sk_cell_points points = sk_load_cell_points(grid, out.triangles + (size_t)i * 9u);
+        sk_list_rows(grid, out.triangles, i, sk_longest_side(sk_box_of(grid, points)), list);
+    }
+}
+
+#if SK_WIDTH > 1
+
+/** Triangles whose cells are found side by side: numbers, vertices and corners, equal components beside each other. */
+typedef struct sk_waiting {
+    sk_u32 count;
+    sk_u32 triangles[SK_WIDTH];
+    sk_u32 x[SK_WIDTH], y[SK_WIDTH], z[SK_WIDTH];
+    float vertices[9][SK_WIDTH];
+} sk_waiting;
+
+SK_FUNCTION void sk_let_wait(sk_waiting* waiting, SK_GLOBAL const float* triangles, sk_u32 i, sk_reach reach) {
+    const sk_dims corner = sk_reach_corner(reach);
+    const sk_u32 k = waiting->count;
+    waiting->triangles[k] = i;
+    waiting->x[k] = corner.x;
+    waiting->y[k] = corner.y;
+    waiting->z[k] = corner.z;
+    for (sk_u32 c = 0u; c < 9u; ++c) waiting->vertices[c][k] = triangles[(size_t)i * 9u + c];
+    waiting->count = k + 1u;
+}
+
+SK_FUNCTION sk_dims sk_waiting_corner(const sk_waiting* waiting, sk_u32 k) {
+    sk_dims r;
+    r.x = waiting->x[k];
+    r.y = waiting->y[k];
+    r.z = waiting->z[k];
+    return r;
+}
+
+SK_FUNCTION void sk_count_waiting(sk_waiting* waiting, SetkaGridHeader grid, sk_scatter out,
+                                  SK_GLOBAL sk_reach* reaches, sk_row_list list) {
+    sk_u32 masks[SK_WIDTH];
+    for (sk_u32 k = 0u; k < SK_WIDTH; ++k) {
+        sk_cell_points points;
+        points.p0 = sk_to_cells(grid, sk_make3(waiting->vertices[0][k], waiting->vertices[1][k], waiting->vertices[2][k]));
+        points.p1 = sk_to_cells(grid, sk_make3(waiting->vertices[3][k], waiting->vertices[4][k], waiting->vertices[5][k]));
+        points.p2 = sk_to_cells(grid, sk_make3(waiting->vertices[6][k], waiting->vertices[7][k], waiting->vertices[8][k]));
+        masks[k] = sk_pair_mask(grid, points, sk_waiting_corner(waiting, k));
+    }
+    for (sk_u32 k = 0u; k < waiting->count; ++k)
+        sk_count_triangle(waiting->triangles[k],
+                          sk_make_reach(sk_waiting_corner(waiting, k), SK_REACH_MASK, masks[k]), grid, out, reaches,
+                          list);
+    waiting->count = 0u;
+}
+
+/** Counts triangles first to end - 1. */
+SK_FUNCTION void sk_count_triangles(sk_u32 first, sk_u32 end, SetkaGridHeader grid, sk_scatter out,
+                                    SK_GLOBAL sk_reach* reaches, sk_row_list list) {
+    sk_waiting waiting;
+    waiting.count = 0u;
+    for (sk_u32 start = first; start < end; start += SK_WIDTH) {
+        sk_reach found[SK_WIDTH];
+        for (sk_u32 k = 0u; k < SK_WIDTH; ++k) {
+            const sk_u32 i = start + k < end ? start + k : start;
+            found[k] = sk_reach_by_box(sk_box_of(grid, sk_load_cell_points(grid, out.triangles + (size_t)i * 9u)));
+        }
+        for (sk_u32 k = 0u; k < SK_WIDTH && start + k < end; ++k)
+            if (sk_reach_kind(found[k]) == SK_REACH_PAIR) {
+                sk_let_wait(&waiting, out.triangles, start + k, found[k]);
+                if (waiting.count == SK_WIDTH) sk_count_waiting(&waiting, grid, out, reaches, list);
+            } else {
+                const sk_cell_points points = sk_load_cell_points(grid, out.triangles + (size_t)(start + k) * 9u);
+                sk_count_triangle(start + k, sk_reach_by_rule(grid, points, found[k]), grid, out, reaches, list);
+            }
+    }
+    if (waiting.count != 0u) {
+        /* The places that stay empty are a triangle's that is there. */
+        const sk_u32 count = waiting.count;
+        for (sk_u32 k = count; k < SK_WIDTH; ++k)
+            sk_let_wait(&waiting, out.triangles, waiting.triangles[0], sk_make_reach(sk_waiting_corner(&waiting, 0u), 0u, 0u));
+        waiting.count = count;
+        sk_count_waiting(&waiting, grid, out, reaches, list);
+    }
+}
+
+#else
+
+/** Counts triangles first to end - 1. */
+SK_FUNCTION void sk_count_triangles(sk_u32 first, sk_u32 end, SetkaGridHeader grid, sk_scatter out,
+                                    SK_GLOBAL sk_reach* reaches, sk_row_list list) {
+    for (sk_u32 i = first; i < end; ++i) {
+        const sk_cell_points points = sk_load_cell_points(grid, out.triangles + (size_t)i * 9u);
+        const sk_reach reach = sk_reach_by_rule(grid, points, sk_reach_by_box(sk_box_of(grid, points)));
+        sk_count_triangle(i, reach, grid, out, reaches, list);
+    }
+}
+
+#endif
+
+/** Puts triangle i into the lists of its cells, unless it is large. */
+SK_FUNCTION void sk_place_triangle(sk_u32 i, SetkaGridHeader grid, sk_scatter out, SK_GLOBAL const sk_reach* reaches) {
+    const sk_reach reach = reaches[i];
+    if (sk_reach_kind(reach) == SK_REACH_MASK)
+        sk_take_mask(grid, out, reach, i, 1);
+    else if (sk_reach_kind(reach) == SK_REACH_ROWS)
+        sk_take_rows(grid, out, i, 1);
+}
+
+/**
+ * Does the listed rows r, r + step, …. Nothing is done if not all rows are listed, or if they are known to be
+ * too many; and counting ends when the cells found are more than any grid may have: it is refused then. What other work-items
+ * see of that changes nothing else.
+ */
+SK_FUNCTION void sk_take_listed(sk_u32 r, sk_u32 step, SetkaGridHeader grid, sk_scatter out, sk_row_list list,
+                                const int place) {
+    const sk_u32 rows = list.totals[SK_TOTAL_ROWS];
+    const int is_hopeless = rows > list.capacity || list.totals[SK_TOTAL_LONG] >= SK_MOST_LONG_ROWS;
+    for (sk_u32 k = r; k < rows && !is_hopeless; k += step)
+        if (place || *(volatile SK_GLOBAL sk_u32*)(list.totals + SK_TOTAL_FOUND) < SK_MOST_LONG_ROWS) {
+            const sk_u32 triangle = list.entries[2u * (size_t)k], j = list.entries[2u * (size_t)k + 1u];
+            const sk_cell_triangle t = sk_load_cell_triangle(grid, out.triangles + (size_t)triangle * 9u);
+            const sk_u32 units = sk_take_row(grid, t, j, out, triangle, place) / SK_LONG_ROW;
+            if (!place && units != 0u) sk_atomic_add(list.totals + SK_TOTAL_FOUND, units);
+        }
+}
+
+/** Block b from the counters of its cells; `spare` becomes the number of its pairs. Lists longer than `alone` come in pieces. */
+SK_FUNCTION void sk_count_block(sk_u32 b, sk_u32 alone, SK_GLOBAL const sk_u32* counters, SK_GLOBAL sk_block* blocks,
                                 SK_GLOBAL sk_u32* totals) {
     SK_GLOBAL const sk_u32* own = counters + (size_t)b * SK_BLOCK_CELLS;
     sk_u64 pairs = 0u;
-    sk_u32 longest = 0u, mask[2] = {0u, 0u};
+    sk_u32 longest = 0u, pieces = 0u, mask[2] = {0u, 0u};
     sk_block block;
     for (sk_u32 word = 0u; word < 2u; ++word)
         for (sk_u32 bit = 0u; bit < 32u; ++bit) {
@@ -22,13 +246,48 @@ SK_FUNCTION void sk_count_block(sk_u32 b, SK_GLOBAL const sk_u32* counters, SK_G
             mask[word] |= (count != 0u ? 1u : 0u) << bit;
             pairs += count;
             longest = sk_max_u32(longest, count);
+            pieces += count > alone ? sk_piece_count(count) : 0u;
         }
     block.mask_low = mask[0];
     block.mask_high = mask[1];
     block.first = 0u;
     block.spare = pairs >> 32 != 0u ? 0xffffffffu : (sk_u32)pairs;
     blocks[b] = block;
-    if (longest > SK_LONG_LIST) sk_atomic_min(totals + SK_TOTAL_LONGEST, ~longest);
+    if (longest > sk_min_u32(alone, SK_LONG_LIST)) sk_atomic_max(totals + SK_TOTAL_LONGEST, longest);
+    if (pieces != 0u) sk_atomic_add(totals + SK_TOTAL_PIECES, pieces);
+}
+
+/** Cuts a list into pieces. */
+SK_FUNCTION void sk_cut_list(sk_cell_list list, SK_GLOBAL sk_piece* pieces, SK_GLOBAL sk_u32* totals) {
+    const sk_u32 count = sk_piece_count(list.count);
+    sk_piece piece;
+    piece.offset = list.offset;
+    piece.count = list.count;
+    piece.first = sk_atomic_add(totals + SK_TOTAL_CUT, count);
+    piece.spare = 0u;
+    for (sk_u32 k = 0u; k < count; ++k) pieces[piece.first + k] = piece;
+}
+
+/** The records of block b's cells, after the scan; the counters become the first places of the lists. */
+SK_FUNCTION void sk_lay_out_block(sk_u32 b, sk_u32 alone, SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_block* blocks,
+                                  SK_GLOBAL sk_cell_list* cells, SK_GLOBAL sk_piece* pieces,
+                                  SK_GLOBAL sk_u32* totals) {
+    SK_GLOBAL sk_u32* own = counters + (size_t)b * SK_BLOCK_CELLS;
+    sk_block block = blocks[b];
+    sk_u32 r = block.first;
+    sk_cell_list list;
+    list.offset = block.spare;
+    for (sk_u64 rest = sk_mask_of(block); rest != 0u; rest &= rest - 1u) {
+        const sk_u32 bit = sk_bit_count((rest & (~rest + 1u)) - 1u);
+        list.count = own[bit];
+        own[bit] = list.offset;
+        cells[r] = list;
+        if (list.count > alone) sk_cut_list(list, pieces, totals);
+        list.offset += list.count;
+        r += 1u;
+    }
+    block.spare = 0u;
+    blocks[b] = block;
 }
 
 #endif
