@@ -4,13 +4,13 @@
 
 #include "device/grid/build.h"
 
-SK_KERNEL void grid_transform(sk_u32 n, sk_u32 instance_count, SK_GLOBAL const float* positions,
+SK_KERNEL void grid_transform(sk_u32 n, sk_u32 elements, sk_u32 instance_count, SK_GLOBAL const float* positions,
                               SK_GLOBAL const sk_u32* indices, SK_GLOBAL const SetkaInstance* instances,
                               SK_GLOBAL const sk_u32* instance_starts, SK_GLOBAL float* triangles,
-                              SK_GLOBAL sk_u32* first_bad) {
-    const sk_u32 i = sk_global_id();
-    if (i < n)
-        sk_grid_transform(i, instance_count, positions, indices, instances, instance_starts, triangles, first_bad);
+                              SK_GLOBAL sk_u32* world) {
+    SK_LOCAL_STORAGE sk_u32 scratch[SK_BOUNDS_VALUES * SK_MAX_GROUP];
+    sk_grid_transform(scratch, n, elements, instance_count, positions, indices, instances, instance_starts, triangles,
+                      world);
 }
 
 SK_KERNEL void grid_rows(sk_u32 n, SetkaGridHeader grid, SK_GLOBAL const float* triangles, SK_GLOBAL sk_u32* rows) {

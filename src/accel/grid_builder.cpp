@@ -12,7 +12,6 @@
 #include "accel/scattered_lists.hpp"
 #include "accel/sorted_lists.hpp"
 #include "accel/world_geometry.hpp"
-#include "algo/reduce.hpp"
 #include "backend/device.hpp"
 #include "setka/grid.hpp"
 
@@ -70,7 +69,7 @@ class UniformGridBuilder final : public GridBuilder {
         plan.header_ = make_header(plan.geometry_, resolution);
         const std::uint64_t stage_bytes = count(queue, plan, limits);
         plan.peak_bytes_ = plan.geometry_.triangles.size_bytes() +
-                           std::max(stage_bytes, word + reduce_scratch_bytes(queue.device(), n));
+                           std::max(stage_bytes, transform_scratch_bytes);
         limits.check_budget(plan.peak_bytes_, "for " + std::to_string(plan.pair_count()) + " pairs in " +
                                                   std::to_string(plan.header_.cell_count) + " cells");
         limits.check_allocation(plan.pair_count(), "references");

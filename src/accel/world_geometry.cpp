@@ -12,6 +12,23 @@
 
 namespace setka {
 
+namespace {
+
+/// How triangles are spread over work-items: one after the other for a lone one, few enough for drivers that end loops
+/// early (algo/shape.hpp); side by side in a group.
+struct TransformLayout {
+    std::uint32_t groups, group_size, elements;
+    TransformLayout(const Device& device, std::uint32_t triangles) {
+        const bool is_serial = device.options().primitives == PrimitiveShape::Serial;
+        group_size = is_serial ? 1 : device.options().work_group_size;
+        elements = is_serial ? 2048 : 4;
+        groups = static_cast<std::uint32_t>((triangles + std::uint64_t(group_size) * elements - 1) /
+                                            (std::uint64_t(group_size) * elements));
+    }
+};
+
+}  // namespace
+
 WorldGeometry transform_scene(Queue& queue, const DeviceScene& scene) {
     WorldGeometry geometry;
     geometry.triangle_count = scene.triangle_count();
@@ -23,14 +40,18 @@ WorldGeometry transform_scene(Queue& queue, const DeviceScene& scene) {
     queue.impl().begin_stage("transform");
     geometry.triangles = queue.make_buffer<float>(std::size_t(geometry.triangle_count) * 9, "world triangles");
     constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-    const auto first_bad = queue.make_buffer<std::uint32_t>(1, "first non-finite triangle");
-    queue.impl().fill(*first_bad.memory(), none, sizeof(none));
-    launch_items(queue, Kernel::grid_transform, geometry.triangle_count, geometry.instance_count, scene.positions(),
-                 scene.indices(), scene.instances(), scene.instance_starts(), geometry.triangles, first_bad);
-
-    queue.impl().begin_stage("bounds");
-    geometry.bounds = reduce_bounds(queue, geometry.triangles, geometry.triangle_count);
-    if (const std::uint32_t bad = queue.download(first_bad).front(); bad != none)
+    const auto world = queue.make_buffer<std::uint32_t>(transform_scratch_bytes / sizeof(none), "bounds");
+    queue.impl().fill(*world.memory(), none, world.size_bytes());
+    const TransformLayout layout(queue.device(), geometry.triangle_count);
+    launch_groups(queue, Kernel::grid_transform, layout.groups, layout.group_size, geometry.triangle_count,
+                  layout.elements, geometry.instance_count, scene.positions(), scene.indices(), scene.instances(),
+                  scene.instance_starts(), geometry.triangles, world);
+    const std::vector<std::uint32_t> words = queue.download(world);
+    for (int axis = 0; axis < 3; ++axis) {
+        geometry.bounds.lower[axis] = float_of_ordered(words[1 + axis]);
+        geometry.bounds.upper[axis] = float_of_ordered(~words[4 + axis]);
+    }
+    if (const std::uint32_t bad = words.front(); bad != none)
         throw Error(ErrorCategory::InvalidData,
                     "scene triangle " + std::to_string(bad) +
                         " has a vertex that is not finite after its instance's transform; finite vertices are needed");

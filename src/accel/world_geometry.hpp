@@ -11,6 +11,9 @@ namespace setka {
 /// finite in world space, or a scene too large to calculate with (an extent above 1e20).
 [[nodiscard]] WorldGeometry transform_scene(Queue& queue, const DeviceScene& scene);
 
+/// What transform_scene() holds besides meanwhile.
+inline constexpr std::uint64_t transform_scratch_bytes = 7 * sizeof(std::uint32_t);
+
 /// The longest side of the bounds, in float.
 [[nodiscard]] float extent_of(const Bounds& bounds) noexcept;
 

@@ -16,12 +16,11 @@ namespace {
 
 constexpr std::uint32_t values = 6;
 
-/// The inverse of sk_ordered in device/reduce.h.
-float float_of(std::uint32_t ordered) {
+}  // namespace
+
+float float_of_ordered(std::uint32_t ordered) noexcept {
     return std::bit_cast<float>((ordered & 0x80000000u) ? ordered & 0x7fffffffu : ~ordered);
 }
-
-}  // namespace
 
 std::uint64_t reduce_scratch_bytes(const Device& device, std::uint32_t n) {
     if (n == 0) return 0;
@@ -52,8 +51,8 @@ Bounds reduce_bounds(Queue& queue, const Buffer<float>& triangles, std::uint32_t
     const std::vector<std::uint32_t> result = queue.download(partials);
     Bounds bounds{};
     for (int axis = 0; axis < 3; ++axis) {
-        bounds.lower[axis] = float_of(result[axis]);
-        bounds.upper[axis] = float_of(result[axis + 3]);
+        bounds.lower[axis] = float_of_ordered(result[axis]);
+        bounds.upper[axis] = float_of_ordered(result[axis + 3]);
     }
     return bounds;
 }

@@ -8,6 +8,9 @@
 
 namespace setka {
 
+/// The inverse of sk_ordered in device/reduce.h.
+[[nodiscard]] float float_of_ordered(std::uint32_t ordered) noexcept;
+
 /// Bytes of scratch that the reduction over n triangles holds while it runs.
 [[nodiscard]] std::uint64_t reduce_scratch_bytes(const Device& device, std::uint32_t n);
 

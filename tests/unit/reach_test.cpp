@@ -51,7 +51,7 @@ std::set<sk_u32> listed_by_rows(const SetkaGridHeader& grid, const Triangle& tri
 std::set<sk_u32> cells_of(const SetkaGridHeader& grid, sk_reach reach) {
     std::set<sk_u32> cells;
     for (sk_u32 bit = 0; bit < 64; ++bit)
-        if (sk_has_bit(sk_reach_mask(reach), bit)) {
+        if ((sk_reach_mask(reach) >> bit & 1u) != 0u) {
             const sk_u32 x = (reach.corner_xy & 0xffff) + bit % 4, y = (reach.corner_xy >> 16) + bit / 4 % 4,
                          z = (reach.corner_z & 0xffff) + bit / 16;
             cells.insert((z * grid.dims[1] + y) * grid.dims[0] + x);

@@ -9,12 +9,18 @@
 
 #include "device/grid/cells.h"
 #include "device/grid/limits.h"
+#include "device/reduce.h"
+
+/** The box of what a work-item has seen. */
+typedef struct sk_extremes {
+    sk_vec3 low, high;
+} sk_extremes;
 
 /** Stage 1: world vertices of triangle i. first_bad becomes the lowest triangle that is not finite. */
-SK_FUNCTION void sk_grid_transform(sk_u32 i, sk_u32 instance_count, SK_GLOBAL const float* positions,
-                                   SK_GLOBAL const sk_u32* indices, SK_GLOBAL const SetkaInstance* instances,
-                                   SK_GLOBAL const sk_u32* instance_starts, SK_GLOBAL float* triangles,
-                                   SK_GLOBAL sk_u32* first_bad) {
+SK_FUNCTION sk_extremes sk_transform_triangle(sk_u32 i, sk_u32 instance_count, SK_GLOBAL const float* positions,
+                                              SK_GLOBAL const sk_u32* indices, SK_GLOBAL const SetkaInstance* instances,
+                                              SK_GLOBAL const sk_u32* instance_starts, SK_GLOBAL float* triangles,
+                                              SK_GLOBAL sk_u32* first_bad, sk_extremes seen) {
     const sk_u32 number = sk_find_segment(instance_starts, instance_count, i);
     SK_GLOBAL const SetkaInstance* instance = instances + number;
     SK_GLOBAL const sk_u32* index =
@@ -28,8 +34,48 @@ SK_FUNCTION void sk_grid_transform(sk_u32 i, sk_u32 instance_count, SK_GLOBAL co
         triangle[3u * k] = q.x;
         triangle[3u * k + 1u] = q.y;
         triangle[3u * k + 2u] = q.z;
+        seen.low = sk_make3(sk_min(seen.low.x, q.x), sk_min(seen.low.y, q.y), sk_min(seen.low.z, q.z));
+        seen.high = sk_make3(sk_max(seen.high.x, q.x), sk_max(seen.high.y, q.y), sk_max(seen.high.z, q.z));
     }
     if (!finite) sk_atomic_min(first_bad, i);
+    return seen;
+}
+
+/**
+ * Stages 1 and 2: `elements` triangles a work-item, and the box of all. world[0] becomes the lowest triangle that is not finite;
+ * world[1 .. 4) the box's lower corner and world[4 .. 7) the complement of its upper one, as integers of the same order: all are minima, from ~0 on.
+ */
+SK_FUNCTION void sk_grid_transform(SK_LOCAL sk_u32* scratch, sk_u32 n, sk_u32 elements, sk_u32 instance_count,
+                                   SK_GLOBAL const float* positions, SK_GLOBAL const sk_u32* indices,
+                                   SK_GLOBAL const SetkaInstance* instances, SK_GLOBAL const sk_u32* instance_starts,
+                                   SK_GLOBAL float* triangles, SK_GLOBAL sk_u32* world) {
+    const sk_u32 item = sk_local_id(), size = sk_local_size();
+    const sk_u64 first = (sk_u64)sk_group_id() * size * elements + item;
+    const float infinity = sk_bits_float(0x7f800000u);
+    sk_extremes seen;
+    seen.low = sk_make3(infinity, infinity, infinity);
+    seen.high = sk_make3(-infinity, -infinity, -infinity);
+    for (sk_u32 k = 0u; k < elements; ++k) {
+        const sk_u64 i = first + (sk_u64)k * size;
+        if (i < n)
+            seen = sk_transform_triangle((sk_u32)i, instance_count, positions, indices, instances, instance_starts,
+                                         triangles, world, seen);
+    }
+    scratch[item] = sk_ordered(seen.low.x);
+    scratch[SK_MAX_GROUP + item] = sk_ordered(seen.low.y);
+    scratch[2u * SK_MAX_GROUP + item] = sk_ordered(seen.low.z);
+    scratch[3u * SK_MAX_GROUP + item] = ~sk_ordered(seen.high.x);
+    scratch[4u * SK_MAX_GROUP + item] = ~sk_ordered(seen.high.y);
+    scratch[5u * SK_MAX_GROUP + item] = ~sk_ordered(seen.high.z);
+    for (sk_u32 others = size / 2u; others > 0u; others /= 2u) {
+        SK_BARRIER();
+        for (sk_u32 v = 0u; v < SK_BOUNDS_VALUES && item < others; ++v) {
+            SK_LOCAL sk_u32* own = scratch + v * SK_MAX_GROUP + item;
+            *own = sk_min_u32(*own, own[others]);
+        }
+    }
+    SK_BARRIER();
+    for (sk_u32 v = item; v < SK_BOUNDS_VALUES; v += size) sk_atomic_min(world + 1u + v, scratch[v * SK_MAX_GROUP]);
 }
 
 /** Stage 4, first half: rows of triangle i. */
