@@ -69,6 +69,7 @@ class AllKernels {
     void print() {
         for (const std::string& name : sizes_.scenes) print_scene(name, support::find_scene(name).make());
         print_scene("ball", support::ball(sizes_.ball));
+        print_pile();
         print_bounds();
         print_pictures();
     }
@@ -102,6 +103,16 @@ class AllKernels {
         for (const auto step : {setka::GridStep::Dda, setka::GridStep::BranchFree})
             print_rays(name + (step == setka::GridStep::Dda ? " dda" : " branch_free"), grid,
                        setka::Tracer({.step = step}), rays);
+    }
+
+    /// A list so long that more than one work-item sorts and moves it.
+    void print_pile() {
+        const setka::DeviceScene on_device(queue_, support::ball(1100));
+        for (const setka::CellTables tables : support::all_cell_tables) {
+            const auto builder = setka::make_grid_builder({.max_cells_per_axis = 1, .cell_tables = tables});
+            print_line("pile " + std::string(to_string(tables)),
+                       builder->build(queue_, on_device).digest(queue_).to_string());
+        }
     }
 
     void print_all_hits(const std::string& name, const setka::Structure& structure,
