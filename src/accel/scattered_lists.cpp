@@ -18,7 +18,7 @@ constexpr std::uint32_t piece_numbers = 64;
 
 /// The longest list that one work-item puts in order.
 std::uint32_t longest_alone(const Device& device) {
-    return device.options().primitives == PrimitiveShape::Serial ? 4096 : piece_numbers;
+    return device.options().primitives == PrimitiveShape::Serial ? 4096 : 32;
 }
 
 /// Rows of large triangles that are provided for before any is seen: one a triangle, and those of some giants.

@@ -233,23 +233,34 @@ SK_FUNCTION void sk_take_listed(sk_u32 r, sk_u32 step, SetkaGridHeader grid, sk_
         }
 }
 
+/** Counters of four cells, read at once. */
+typedef struct SK_ALIGNED(16) sk_four_counts {
+    sk_u32 a, b, c, d;
+} sk_four_counts;
+
+SK_FUNCTION sk_u32 sk_pieces_of(sk_u32 count, sk_u32 alone) { return count > alone ? sk_piece_count(count) : 0u; }
+
 /** Block b from the counters of its cells; `spare` becomes the number of its pairs. Lists longer than `alone` come in pieces. */
 SK_FUNCTION void sk_count_block(sk_u32 b, sk_u32 alone, SK_GLOBAL const sk_u32* counters, SK_GLOBAL sk_block* blocks,
                                 SK_GLOBAL sk_u32* totals) {
-    SK_GLOBAL const sk_u32* own = counters + (size_t)b * SK_BLOCK_CELLS;
-    sk_u64 pairs = 0u;
-    sk_u32 longest = 0u, pieces = 0u, mask[2] = {0u, 0u};
+    SK_GLOBAL const sk_four_counts* own = (SK_GLOBAL const sk_four_counts*)(counters + (size_t)b * SK_BLOCK_CELLS);
+    sk_u64 pairs = 0u, mask = 0u;
+    sk_u32 longest = 0u, pieces = 0u;
     sk_block block;
-    for (sk_u32 word = 0u; word < 2u; ++word)
-        for (sk_u32 bit = 0u; bit < 32u; ++bit) {
-            const sk_u32 count = own[word * 32u + bit];
-            mask[word] |= (count != 0u ? 1u : 0u) << bit;
-            pairs += count;
-            longest = sk_max_u32(longest, count);
-            pieces += count > alone ? sk_piece_count(count) : 0u;
-        }
-    block.mask_low = mask[0];
-    block.mask_high = mask[1];
+    for (sk_u32 row = 0u; row < SK_BLOCK_CELLS / 4u; ++row) {
+        const sk_four_counts counts = own[row];
+        const sk_u32 most = sk_max_u32(sk_max_u32(counts.a, counts.b), sk_max_u32(counts.c, counts.d));
+        const sk_u32 bits = (counts.a != 0u ? 1u : 0u) | (counts.b != 0u ? 2u : 0u) | (counts.c != 0u ? 4u : 0u) |
+                            (counts.d != 0u ? 8u : 0u);
+        mask |= (sk_u64)bits << 4u * row;
+        pairs += ((sk_u64)counts.a + counts.b) + ((sk_u64)counts.c + counts.d);
+        longest = sk_max_u32(longest, most);
+        if (most > alone)
+            pieces += sk_pieces_of(counts.a, alone) + sk_pieces_of(counts.b, alone) +
+                      (sk_pieces_of(counts.c, alone) + sk_pieces_of(counts.d, alone));
+    }
+    block.mask_low = (sk_u32)mask;
+    block.mask_high = (sk_u32)(mask >> 32);
     block.first = 0u;
     block.spare = pairs >> 32 != 0u ? 0xffffffffu : (sk_u32)pairs;
     blocks[b] = block;

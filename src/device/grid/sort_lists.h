@@ -39,11 +39,46 @@ SK_FUNCTION void sk_sort_numbers(SK_GLOBAL sk_u32* list, sk_u32 count) {
     }
 }
 
+#if SK_TEAM > 1
+
+/** The most numbers that a work-item holds in registers. */
+#define SK_HELD 16u
+
+/** A list of up to SK_HELD numbers: each goes where as many are smaller. Nothing waits for memory but the loads and the stores. */
+SK_FUNCTION void sk_rank_numbers(SK_GLOBAL sk_u32* list, sk_u32 count) {
+    sk_u32 numbers[SK_HELD], ranks[SK_HELD];
+    for (sk_u32 k = 0u; k < SK_HELD; ++k) {
+        numbers[k] = k < count ? list[k] : 0xffffffffu;
+        ranks[k] = 0u;
+    }
+    for (sk_u32 k = 1u; k < SK_HELD; ++k)
+        for (sk_u32 i = 0u; i < k; ++i) {
+            const sk_u32 is_greater = numbers[i] > numbers[k] ? 1u : 0u;
+            ranks[i] += is_greater;
+            ranks[k] += 1u - is_greater;
+        }
+    for (sk_u32 k = 0u; k < SK_HELD; ++k)
+        if (k < count) list[ranks[k]] = numbers[k];
+}
+
+SK_FUNCTION void sk_sort_short(SK_GLOBAL sk_u32* list, sk_u32 count) {
+    if (count <= SK_HELD)
+        sk_rank_numbers(list, count);
+    else
+        sk_sort_numbers(list, count);
+}
+
+#else
+
+SK_FUNCTION void sk_sort_short(SK_GLOBAL sk_u32* list, sk_u32 count) { sk_sort_numbers(list, count); }
+
+#endif
+
 /** The list of record r, unless it is longer than `alone`. */
 SK_FUNCTION void sk_sort_list(sk_u32 r, sk_u32 alone, SK_GLOBAL const sk_cell_list* cells,
                               SK_GLOBAL sk_u32* references) {
     const sk_cell_list list = cells[r];
-    if (list.count <= alone) sk_sort_numbers(references + list.offset, list.count);
+    if (list.count <= alone) sk_sort_short(references + list.offset, list.count);
 }
 
 /** Number e of the scratch, from the unsorted list to its place in its piece. */
