@@ -47,4 +47,29 @@ typedef ulong sk_u64;
 #define sk_atomic_add(p, v) atomic_add(p, v)
 #define sk_atomic_or(p, v) atomic_or(p, v)
 
+#if SK_WIDTH > 1
+typedef float4 sk_f4;
+typedef float8 sk_fN;
+typedef int8 sk_iN;
+#define sk_make_f(a, b, c, d, e, f, g, h) ((float8)(a, b, c, d, e, f, g, h))
+#define sk_make_i(a, b, c, d, e, f, g, h) ((int8)(a, b, c, d, e, f, g, h))
+#define sk_lane(v, k) ((v).s##k)
+#define sk_load_f4(p) vload4(0, p)
+#define sk_store_f(v, p) vstore8(v, 0, p)
+#define sk_store_i(v, p) vstore8(v, 0, p)
+#define sk_lanes_to_float(i) convert_float8(i)
+#define sk_lanes_to_int(f) convert_int8(f)
+#define sk_lanes_as_int(f) as_int8(f)
+#define sk_lanes_as_float(i) as_float8(i)
+/* Compilers of OpenCL C are made of Clang. */
+#define sk_shuffle __builtin_shufflevector
+#if __has_builtin(__builtin_reduce_or) && __has_builtin(__builtin_reduce_add) /* Clang 15: one instruction for the first */
+#define sk_lanes_or(i) __builtin_reduce_or(i)
+#define sk_lanes_sum(i) __builtin_reduce_add(i)
+#else
+#define sk_lanes_or(i) ((((i).s0 | (i).s1) | ((i).s2 | (i).s3)) | (((i).s4 | (i).s5) | ((i).s6 | (i).s7)))
+#define sk_lanes_sum(i) ((((i).s0 + (i).s1) + ((i).s2 + (i).s3)) + (((i).s4 + (i).s5) + ((i).s6 + (i).s7)))
+#endif
+#endif
+
 #endif

@@ -93,6 +93,8 @@ class Device : public std::enable_shared_from_this<Device> {
     [[nodiscard]] virtual const DeviceOptions& options() const noexcept = 0;
     [[nodiscard]] virtual std::shared_ptr<Queue> make_queue() = 0;
     virtual void trim() = 0;
+    /// SK_WIDTH of its kernels: how many rays a work-item traces side by side.
+    [[nodiscard]] virtual std::uint32_t width() const noexcept { return 1; }
     /// SK_TEAM of its kernels: the size of the groups in which team kernels run, or 1 if they may have any.
     [[nodiscard]] virtual std::uint32_t team_size() const noexcept { return 1; }
 

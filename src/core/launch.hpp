@@ -39,16 +39,23 @@ void launch_items(Queue& queue, Kernel kernel, std::uint32_t items, const Ts&...
     launch_enough(queue, kernel, items, items, arguments...);
 }
 
-/// The same for a kernel that takes a second number, the first element (`n, first, …`), and does elements first to n - 1. Where a
-/// stop can be requested, at most `most` a launch.
+/// The same for a kernel that takes a second number, the first element (`n, first, …`), and does elements first to n - 1, `width`
+/// in each work-item. Where a stop can be requested, at most `most` a launch.
 template <typename... Ts>
-void launch_range(Queue& queue, Kernel kernel, std::uint32_t items, std::uint64_t most, const Ts&... arguments) {
+void launch_wide_range(Queue& queue, Kernel kernel, std::uint32_t items, std::uint32_t width, std::uint64_t most,
+                       const Ts&... arguments) {
     const std::uint64_t step = queue.impl().stop_token().stop_possible() ? std::max<std::uint64_t>(most, 1) : items;
     for (std::uint64_t first = 0; first < items; first += step) {
         const std::uint64_t end = std::min<std::uint64_t>(items, first + step);
-        launch_enough(queue, kernel, static_cast<std::uint32_t>(end - first), static_cast<std::uint32_t>(end),
-                      static_cast<std::uint32_t>(first), arguments...);
+        launch_enough(queue, kernel, static_cast<std::uint32_t>((end - first + width - 1) / width),
+                      static_cast<std::uint32_t>(end), static_cast<std::uint32_t>(first), arguments...);
     }
+}
+
+/// The same with one element in each work-item.
+template <typename... Ts>
+void launch_range(Queue& queue, Kernel kernel, std::uint32_t items, std::uint64_t most, const Ts&... arguments) {
+    launch_wide_range(queue, kernel, items, 1, most, arguments...);
 }
 
 }  // namespace setka

@@ -11,7 +11,7 @@
  *   SK_LOCAL_STORAGE         before an array in local memory, at the top of a kernel entry only
  *   SK_RESTRICT              on a pointer that nothing else aliases
  *   SK_ALIGNED(bytes)        before the name of a struct whose members are loaded at once
- *   SK_WIDTH                 how many equal calculations a work-item does best side by side: 1 where work-items run in step
+ *   SK_WIDTH                 how many rays a work-item traces side by side: 1 where work-items run in step, 8 on CPUs
  *   SK_TEAM                  how many work-items run in step: 1, or a power of two up to 64 (an integer for #if)
  *   SK_BARRIER()             all work-items of the group; orders local memory; in uniform control flow only
  *   sk_u32 sk_i32 sk_u64     integers
@@ -21,6 +21,16 @@
  *   sk_popcount(u)                                               how many bits of a sk_u32 are set
  *   sk_atomic_min(p, v) sk_atomic_max(p, v) sk_atomic_add(p, v)  on sk_u32 in global or local memory, return what was there;
  *   sk_atomic_or(p, v)                                           order-free uses only
+ *
+ * Where SK_WIDTH is 8 (src/device/lanes.h), operators on vectors with the meaning they have in OpenCL C, scalars on one side
+ * included, `mask ? a : b` with a mask of all bits or none, and:
+ *   sk_fN sk_iN sk_f4        8 floats, 8 sk_i32, 4 floats
+ *   sk_make_f(a, …, h) sk_make_i(a, …, h) sk_lane(v, k)          k is a literal
+ *   sk_load_f4(p) sk_store_f(v, p) sk_store_i(v, p)              aligned as one number is; stores to private memory
+ *   sk_lanes_to_float(i) sk_lanes_to_int(f)                      conversions; f in the range of sk_i32
+ *   sk_lanes_as_int(f) sk_lanes_as_float(i)                      bit casts
+ *   sk_lanes_or(i) sk_lanes_sum(i)                               of all lanes
+ *   sk_shuffle(v, w, i, …)                                       elements of v and w, which are numbered on
  *
  * Not allowed: fma, mad, min, max, clamp, rsqrt, dot, cross, normalize, pow, exp, log, sin, float3, doubles, sub-groups,
  * float atomics, recursion, `return` before a barrier, a float to integer cast of a value that was not range-checked.

@@ -12,6 +12,7 @@
 #include <cfloat>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 #if defined(__FAST_MATH__)
 #error "compile the dialect with strict floating point: its results have to be those of every device"
@@ -48,6 +49,30 @@ inline thread_local sk_u32 sk_host_group = 0;
 #define sk_popcount(u) (static_cast<sk_u32>(std::popcount(sk_u32{u})))
 #define sk_sqrt(f) (std::sqrt(f))
 #define sk_floor(f) (std::floor(f))
+
+/* Compile with -Wno-psabi: every function with vectors is called in its own file only. */
+#if SK_WIDTH > 1
+typedef float sk_f4 __attribute__((vector_size(16)));
+typedef float sk_fN __attribute__((vector_size(32)));
+typedef sk_i32 sk_iN __attribute__((vector_size(32)));
+#define sk_make_f(a, b, c, d, e, f, g, h) (sk_fN{a, b, c, d, e, f, g, h})
+#define sk_make_i(a, b, c, d, e, f, g, h) (sk_iN{a, b, c, d, e, f, g, h})
+#define sk_lane(v, k) ((v)[k])
+static inline sk_f4 sk_load_f4(const float* p) {
+    sk_f4 r;
+    std::memcpy(&r, p, sizeof r);
+    return r;
+}
+static inline void sk_store_f(sk_fN v, float* p) { std::memcpy(p, &v, sizeof v); }
+static inline void sk_store_i(sk_iN v, sk_i32* p) { std::memcpy(p, &v, sizeof v); }
+#define sk_lanes_to_float(i) __builtin_convertvector(i, sk_fN)
+#define sk_lanes_to_int(f) __builtin_convertvector(f, sk_iN)
+#define sk_lanes_as_int(f) ((sk_iN)(f))
+#define sk_lanes_as_float(i) ((sk_fN)(i))
+#define sk_shuffle __builtin_shufflevector
+static inline sk_i32 sk_lanes_or(sk_iN i) { return ((i[0] | i[1]) | (i[2] | i[3])) | ((i[4] | i[5]) | (i[6] | i[7])); }
+static inline sk_i32 sk_lanes_sum(sk_iN i) { return ((i[0] + i[1]) + (i[2] + i[3])) + ((i[4] + i[5]) + (i[6] + i[7])); }
+#endif
 
 static inline sk_u32 sk_atomic_min(sk_u32* target, sk_u32 value) {
     const sk_u32 before = *target;

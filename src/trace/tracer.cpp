@@ -52,6 +52,12 @@ struct QueryKernels {
     Kernel brute_force, grid_dda, grid_branch_free;
 };
 
+/// How many rays one work-item of a kernel traces.
+std::uint32_t rays_an_item(const Device& device, Kernel kernel) {
+    const bool is_wide = kernel == Kernel::trace_grid_closest_dda || kernel == Kernel::trace_grid_any_dda;
+    return is_wide ? device.impl()->width() : 1;
+}
+
 constexpr QueryKernels closest_kernels{Kernel::trace_brute_closest, Kernel::trace_grid_closest_dda,
                                        Kernel::trace_grid_closest_free};
 constexpr QueryKernels any_kernels{Kernel::trace_brute_any, Kernel::trace_grid_any_dda,
@@ -86,11 +92,11 @@ struct Query {
                 if (structure.kind() == StructureKind::UniformGrid) {
                     const auto& grid = static_cast<const Grid&>(structure);
                     const CompactTables& tables = grid.compact_tables();
-                    launch_range(queue,
-                                 options.step == GridStep::Dda ? kernels.grid_dda : kernels.grid_branch_free, n,
-                                 most, values..., grid.header(), scene, batch.rays, batch.skip, particular...,
-                                 tables.blocks, tables.groups, tables.cells, tables.references,
-                                 geometry.triangles, geometry.instance_starts, geometry.instances);
+                    const Kernel kernel = options.step == GridStep::Dda ? kernels.grid_dda : kernels.grid_branch_free;
+                    launch_wide_range(queue, kernel, n, rays_an_item(queue.device(), kernel), most, values...,
+                                      grid.header(), scene, batch.rays, batch.skip, particular..., tables.blocks,
+                                      tables.groups, tables.cells, tables.references, geometry.triangles,
+                                      geometry.instance_starts, geometry.instances);
                 } else {
                     const auto& brute_force = static_cast<const BruteForce&>(structure);
                     launch_range(queue, kernels.brute_force, n, most, values..., scene, batch.rays, batch.skip,

@@ -75,8 +75,7 @@ void OpenClDevice::build_program() {
     // Contraction is switched off in the source; no option may ever relax the arithmetic.
     std::string build_options = "-cl-std=CL1.2";
     if (info_.correctly_rounded_divide_sqrt) build_options += " -cl-fp32-correctly-rounded-divide-sqrt";
-    // Eight floats fill a register of AVX, two of SSE or Neon.
-    if (info_.type == DeviceType::Cpu) build_options += " -DSK_WIDTH=8u";
+    build_options += " -DSK_WIDTH=" + std::to_string(width()) + "u";
     build_options += " -DSK_TEAM=" + std::to_string(team_size());
     // As for CUDA: walks wait for memory, so that more of them at a time are worth more than registers.
     if (device_.getInfo<CL_DEVICE_EXTENSIONS>().find("cl_nv_compiler_options") != std::string::npos)

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /**
- * What does a ray hit of a cell's list? The plain test for all triangles of it, then the accurate one for the few that pass, in two
- * orders: one triangle after the other where work-items run in step, SK_WIDTH side by side where a work-item has vector
- * registers of its own. Each triangle sees the same operations, so the hits are the same.
+ * What does a ray hit of a cell's list? The plain test for all triangles of it, one after the other, and the accurate test for the
+ * few that pass.
  */
 #ifndef SETKA_DEVICE_GRID_CELL_LIST_H
 #define SETKA_DEVICE_GRID_CELL_LIST_H
@@ -56,51 +55,9 @@ SK_FUNCTION sk_best sk_test_candidate(sk_grid_tables grid, sk_trace_params param
     return counts ? hit : best;
 }
 
-#if SK_WIDTH > 1
-
-/** Bit k is set if the ray may hit triangle list[k], k < count and k < SK_WIDTH. */
-SK_FUNCTION sk_u32 sk_candidates(sk_working_ray ray, SK_GLOBAL const float* triangles, SK_GLOBAL const sk_u32* list,
-                                 sk_u32 count) {
-    float vertices[9][SK_WIDTH]; /* components in the ray's order, triangles side by side */
-    sk_u32 bits[SK_WIDTH], r = 0u;
-    for (sk_u32 k = 0u; k < SK_WIDTH; ++k) {
-        SK_GLOBAL const float* triangle = triangles + (size_t)list[k < count ? k : 0u] * 9u;
-        for (sk_u32 v = 0u; v < 3u; ++v) {
-            vertices[3u * v][k] = triangle[3u * v + ray.kx];
-            vertices[3u * v + 1u][k] = triangle[3u * v + ray.ky];
-            vertices[3u * v + 2u][k] = triangle[3u * v + ray.kz];
-        }
-    }
-    for (sk_u32 k = 0u; k < SK_WIDTH; ++k) {
-        const float a0 = vertices[2][k] - ray.oz, a1 = vertices[5][k] - ray.oz, a2 = vertices[8][k] - ray.oz;
-        const float x0 = (vertices[0][k] - ray.ox) - ray.sx * a0, y0 = (vertices[1][k] - ray.oy) - ray.sy * a0;
-        const float x1 = (vertices[3][k] - ray.ox) - ray.sx * a1, y1 = (vertices[4][k] - ray.oy) - ray.sy * a1;
-        const float x2 = (vertices[6][k] - ray.ox) - ray.sx * a2, y2 = (vertices[7][k] - ray.oy) - ray.sy * a2;
-        bits[k] = (sk_mixed_signs_bit(x2 * y1 - y2 * x1, x0 * y2 - y0 * x2, x1 * y0 - y1 * x0) ^ 1u) << k;
-    }
-    for (sk_u32 k = 0u; k < SK_WIDTH; ++k) r |= bits[k];
-    return count < SK_WIDTH ? r & ((1u << count) - 1u) : r;
-}
-
-/** The best of `best` and the hits in a cell's list, past the triangle `skip`. */
-SK_FUNCTION sk_best sk_test_cell(sk_grid_tables grid, sk_trace_params params, sk_working_ray ray,
-                                 sk_cell_list in, sk_u32 skip, sk_best best) {
-    SK_GLOBAL const sk_u32* list = grid.references + in.offset;
-    const sk_u32 count = in.count;
-    sk_best r = best;
-    for (sk_u32 first = 0u; first < count; first += SK_WIDTH) {
-        sk_u32 candidates = sk_candidates(ray, grid.triangles, list + first, count - first);
-        for (sk_u32 k = first; candidates != 0u; ++k, candidates >>= 1)
-            if ((candidates & 1u) != 0u) r = sk_test_candidate(grid, params, ray, list[k], skip, r);
-    }
-    return r;
-}
-
-#else
-
 /**
- * The same. The accurate test is long and few triangles come to it, so it waits until the list is through or the next candidate
- * is there: work-items that run in step do it together.
+ * The best of `best` and the hits in a cell's list, past the triangle `skip`. The accurate test is long and few triangles come to it, so
+ * it waits until the list is through or the next candidate is there: work-items that run in step do it together.
  */
 SK_FUNCTION sk_best sk_test_cell(sk_grid_tables grid, sk_trace_params params, sk_working_ray ray,
                                  sk_cell_list in, sk_u32 skip, sk_best best) {
@@ -127,7 +84,5 @@ SK_FUNCTION sk_best sk_test_cell(sk_grid_tables grid, sk_trace_params params, sk
     } while (candidate != SETKA_NO_HIT);
     return r;
 }
-
-#endif
 
 #endif

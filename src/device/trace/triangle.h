@@ -174,23 +174,29 @@ SK_FUNCTION sk_best sk_no_hit(void) {
     return r;
 }
 
-/** The public record of a best hit. */
-SK_FUNCTION SetkaHit sk_make_hit(sk_trace_params params, sk_working_ray ray, SK_GLOBAL const sk_u32* instance_starts,
-                                 sk_best best) {
+/** The public record of a hit of a scene triangle, or of none. */
+SK_FUNCTION SetkaHit sk_name_hit(sk_trace_params params, SK_GLOBAL const sk_u32* instance_starts, float t, float u, float v,
+                                 sk_u32 triangle) {
     SetkaHit hit;
     hit.t = sk_bits_float(0x7f800000u);
     hit.u = 0.0f;
     hit.v = 0.0f;
     hit.primitive = SETKA_NO_HIT;
     hit.instance = SETKA_NO_HIT;
-    if (best.triangle != SETKA_NO_HIT) {
-        hit.t = sk_user_t(ray, best.w);
-        hit.u = best.u;
-        hit.v = best.v;
-        hit.instance = sk_find_segment(instance_starts, params.instance_count, best.triangle);
-        hit.primitive = best.triangle - instance_starts[hit.instance];
+    if (triangle != SETKA_NO_HIT) {
+        hit.t = t;
+        hit.u = u;
+        hit.v = v;
+        hit.instance = sk_find_segment(instance_starts, params.instance_count, triangle);
+        hit.primitive = triangle - instance_starts[hit.instance];
     }
     return hit;
+}
+
+/** The same of a best hit. */
+SK_FUNCTION SetkaHit sk_make_hit(sk_trace_params params, sk_working_ray ray, SK_GLOBAL const sk_u32* instance_starts,
+                                 sk_best best) {
+    return sk_name_hit(params, instance_starts, sk_user_t(ray, best.w), best.u, best.v, best.triangle);
 }
 
 #endif
