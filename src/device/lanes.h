@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /**
- * How do kernels calculate with SK_WIDTH numbers side by side? One in each lane of a vector, with the operations of math.h, which round
- * in a lane as they do alone. A mask has all bits of a lane set, or none. Only where SK_WIDTH is 8: a work-item of a CPU.
+ * How do kernels calculate with SK_WIDTH numbers side by side? One in each lane of a vector, with the
+ * operations of math.h, which round in a lane as they do alone. A mask has all bits of a lane set, or none.
+ * Only where SK_WIDTH is 8: a work-item of a CPU.
  */
 #ifndef SETKA_DEVICE_LANES_H
 #define SETKA_DEVICE_LANES_H
@@ -27,9 +28,7 @@ SK_FUNCTION sk_fN sk_abs_f(sk_fN a) { return sk_lanes_as_float(sk_lanes_as_int(a
 SK_FUNCTION sk_fN sk_positive_zero_f(sk_fN a) {
     return sk_select_f((sk_lanes_as_int(a) & 0x7fffffff) == sk_same_i(0), sk_same_f(0.0f), a);
 }
-SK_FUNCTION sk_iN sk_finite_f(sk_fN a) {
-    return (sk_lanes_as_int(a) & 0x7f800000) != sk_same_i(0x7f800000);
-}
+SK_FUNCTION sk_iN sk_finite_f(sk_fN a) { return (sk_lanes_as_int(a) & 0x7f800000) != sk_same_i(0x7f800000); }
 
 /** True if the mask is set in any lane. */
 SK_FUNCTION int sk_any_lane(sk_iN mask) { return sk_lanes_or(mask) != 0; }
@@ -71,10 +70,14 @@ SK_FUNCTION sk_columns sk_gather4(SK_GLOBAL const float* base, sk_iN at, sk_u32 
     const sk_f4 r0 = SK_ROW(0), r1 = SK_ROW(1), r2 = SK_ROW(2), r3 = SK_ROW(3);
     const sk_f4 r4 = SK_ROW(4), r5 = SK_ROW(5), r6 = SK_ROW(6), r7 = SK_ROW(7);
 #undef SK_ROW
-    const sk_fN s0 = sk_shuffle(r0, r4, 0, 1, 2, 3, 4, 5, 6, 7), s1 = sk_shuffle(r1, r5, 0, 1, 2, 3, 4, 5, 6, 7);
-    const sk_fN s2 = sk_shuffle(r2, r6, 0, 1, 2, 3, 4, 5, 6, 7), s3 = sk_shuffle(r3, r7, 0, 1, 2, 3, 4, 5, 6, 7);
-    const sk_fN low01 = sk_shuffle(s0, s1, 0, 8, 1, 9, 4, 12, 5, 13), high01 = sk_shuffle(s0, s1, 2, 10, 3, 11, 6, 14, 7, 15);
-    const sk_fN low23 = sk_shuffle(s2, s3, 0, 8, 1, 9, 4, 12, 5, 13), high23 = sk_shuffle(s2, s3, 2, 10, 3, 11, 6, 14, 7, 15);
+    const sk_fN s0 = sk_shuffle(r0, r4, 0, 1, 2, 3, 4, 5, 6, 7),
+                s1 = sk_shuffle(r1, r5, 0, 1, 2, 3, 4, 5, 6, 7);
+    const sk_fN s2 = sk_shuffle(r2, r6, 0, 1, 2, 3, 4, 5, 6, 7),
+                s3 = sk_shuffle(r3, r7, 0, 1, 2, 3, 4, 5, 6, 7);
+    const sk_fN low01 = sk_shuffle(s0, s1, 0, 8, 1, 9, 4, 12, 5, 13),
+                high01 = sk_shuffle(s0, s1, 2, 10, 3, 11, 6, 14, 7, 15);
+    const sk_fN low23 = sk_shuffle(s2, s3, 0, 8, 1, 9, 4, 12, 5, 13),
+                high23 = sk_shuffle(s2, s3, 2, 10, 3, 11, 6, 14, 7, 15);
     sk_columns r;
     r.a = sk_shuffle(low01, low23, 0, 1, 8, 9, 4, 5, 12, 13);
     r.b = sk_shuffle(low01, low23, 2, 3, 10, 11, 6, 7, 14, 15);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-/// Are eight numbers side by side those that one after the other gives? Rays and triangle tests in lanes against the same in
-/// scalars, bit for bit. The walk in lanes is held against brute force on the host device (tests/fuzz) and in the parity tests.
+/// Are eight numbers side by side those that one after the other gives? Rays and triangle tests in lanes
+/// against the same in scalars, bit for bit. The walk in lanes is held against brute force on the host device
+/// (tests/fuzz) and in the parity tests.
 // The translation comes before every file of the dialect.
 #include "device/host_platform.h"
 // The dialect.
@@ -31,12 +32,17 @@ class Numbers {
     float coordinate() { return below(2) ? static_cast<float>(below(5)) * 0.25f : (*this)(-6, 0); }
     /// Anything that a caller may pass.
     float anything() {
-        constexpr std::array<float, 8> special{0.0f, -0.0f, infinity, -infinity, nan, 0x1p-149f, 3e38f, 0x1p-101f};
+        constexpr std::array<float, 8> special{0.0f, -0.0f,     infinity, -infinity,
+                                               nan,  0x1p-149f, 3e38f,    0x1p-101f};
         switch (below(4)) {
-            case 0: return special[below(special.size())];
-            case 1: return std::bit_cast<float>(bits());
-            case 2: return (*this)(-126, 127);
-            default: return coordinate();
+            case 0:
+                return special[below(special.size())];
+            case 1:
+                return std::bit_cast<float>(bits());
+            case 2:
+                return (*this)(-126, 127);
+            default:
+                return coordinate();
         }
     }
     std::uint32_t below(std::uint32_t end) { return bits() % end; }
@@ -64,7 +70,7 @@ std::vector<SetkaRay> some_rays(Numbers& number, std::size_t count) {
         const float distance = kind == 2 ? number(0, 120) : 1.0f;
         for (int axis = 0; axis < 3; ++axis) {
             ray.origin[axis] = kind == 3 ? number.anything() : number.coordinate() * distance;
-            ray.direction[axis] = kind == 3 ? number.anything()
+            ray.direction[axis] = kind == 3   ? number.anything()
                                   : kind == 2 ? number.coordinate() - ray.origin[axis]
                                               : number.coordinate() - 0.5f;
         }
@@ -91,15 +97,18 @@ TEST(Lanes, PrepareRaysAsScalarsDo) {
             if (!one.valid) continue;
             ++valid;
             moved += one.shift != 0.0f;
-            const std::array expected{one.o.x, one.o.y, one.o.z, one.d.x,  one.d.y,   one.d.z,   one.w0,  one.w1, one.pre,
-                                      one.scale, one.shift, one.tmin, one.tmax, one.sx, one.sy, one.sz,
-                                      one.inverse.x, one.inverse.y, one.inverse.z};
-            const std::array found{many.o.x[k],   many.o.y[k],   many.o.z[k],  many.d.x[k],  many.d.y[k], many.d.z[k],
-                                   many.w0[k],    many.w1[k],    many.pre[k],  many.scale[k], many.shift[k], many.tmin[k],
-                                   many.tmax[k], many.sx[k],    many.sy[k],   many.sz[k],
+            const std::array expected{one.o.x,   one.o.y,       one.o.z,       one.d.x,      one.d.y,
+                                      one.d.z,   one.w0,        one.w1,        one.pre,      one.scale,
+                                      one.shift, one.tmin,      one.tmax,      one.sx,       one.sy,
+                                      one.sz,    one.inverse.x, one.inverse.y, one.inverse.z};
+            const std::array found{many.o.x[k],       many.o.y[k],       many.o.z[k],      many.d.x[k],
+                                   many.d.y[k],       many.d.z[k],       many.w0[k],       many.w1[k],
+                                   many.pre[k],       many.scale[k],     many.shift[k],    many.tmin[k],
+                                   many.tmax[k],      many.sx[k],        many.sy[k],       many.sz[k],
                                    many.inverse.x[k], many.inverse.y[k], many.inverse.z[k]};
             for (std::size_t i = 0; i < expected.size(); ++i)
-                ASSERT_EQ(bits(found[i]), bits(expected[i])) << "member " << i << " of ray " << k << " in round " << round;
+                ASSERT_EQ(bits(found[i]), bits(expected[i]))
+                    << "member " << i << " of ray " << k << " in round " << round;
             ASSERT_EQ(many.along_x[k] ? 0u : many.along_y[k] ? 1u : 2u, one.kz);
         }
     }
@@ -123,10 +132,12 @@ TEST(Lanes, TestTrianglesAsScalarsDo) {
             const sk_working_ray ray = sk_prepare_ray(params, rays[k]);
             if (!ray.valid) continue;
             const auto first = static_cast<sk_u32>(9 * k);
-            const bool passes = sk_may_pass(sk_view_triangle(sk_viewpoint_of(ray), triangles.data(), first, 1));
+            const bool passes =
+                sk_may_pass(sk_view_triangle(sk_viewpoint_of(ray), triangles.data(), first, 1));
             ASSERT_EQ(may_pass[k], passes ? -1 : 0) << "lane " << k << " of round " << round;
             const sk_best one = sk_test_triangle(ray, triangles.data(), first, 1, 7, sk_no_hit());
-            ASSERT_EQ(may_pass[k] & found.hits[k], one.triangle == 7 ? -1 : 0) << "lane " << k << " of round " << round;
+            ASSERT_EQ(may_pass[k] & found.hits[k], one.triangle == 7 ? -1 : 0)
+                << "lane " << k << " of round " << round;
             passed += passes;
             if (one.triangle != 7) continue;
             ++hits;

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /**
- * What do SK_WIDTH rays hit in the grid, where one work-item has vector registers for all of them? The walk of walk.h, with a ray in
- * each lane, in a cell and at a list of its own. Lanes that stand at a list wait until all do; then each tests the next triangle of its
- * list until all are through. Every ray and triangle sees the operations of ray.h and triangle.h, so that the hits are the same.
+ * What do SK_WIDTH rays hit in the grid, where one work-item has vector registers for all of them? The walk
+ * of walk.h, with a ray in each lane, in a cell and at a list of its own. Lanes that stand at a list wait
+ * until all do; then each tests the next triangle of its list until all are through. Every ray and triangle
+ * sees the operations of ray.h and triangle.h, so that the hits are the same.
  */
 #ifndef SETKA_DEVICE_GRID_WALK_LANES_H
 #define SETKA_DEVICE_GRID_WALK_LANES_H
@@ -18,7 +19,7 @@ typedef struct sk_axis_lanes {
 
 typedef struct sk_place_lanes {
     sk_axis_lanes x, y, z;
-    sk_iN cube;      /* the width in cells less one of the cube to leave next: 0, 3 or 15 */
+    sk_iN cube; /* the width in cells less one of the cube to leave next: 0, 3 or 15 */
 } sk_place_lanes;
 
 /** sk_cell, also of NaN. */
@@ -28,8 +29,8 @@ SK_FUNCTION sk_iN sk_cell_lanes(sk_fN f, sk_i32 dim) {
     return sk_lanes_to_int(sk_select_f(positive < top, positive, top));
 }
 
-SK_FUNCTION sk_axis_lanes sk_make_axis_lanes(SetkaGridHeader grid, sk_u32 axis, sk_fN o, sk_fN d, sk_fN inverse,
-                                             sk_fN start) {
+SK_FUNCTION sk_axis_lanes sk_make_axis_lanes(SetkaGridHeader grid, sk_u32 axis, sk_fN o, sk_fN d,
+                                             sk_fN inverse, sk_fN start) {
     const sk_i32 dim = (sk_i32)grid.dims[axis];
     const sk_fN zero = sk_same_f(0.0f), direction = d * grid.inverse_cell_size;
     const sk_fN origin = (o - grid.origin[axis]) * grid.inverse_cell_size;
@@ -49,19 +50,23 @@ SK_FUNCTION sk_fN sk_exit_lanes(sk_axis_lanes a, sk_iN low) {
     return sk_select_f(low > a.last, a.origin - sk_lanes_to_float(low), sk_same_f(SK_NEVER)) * a.inverse;
 }
 
-/** The index after a step: behind the cube's face where the ray leaves it `through` this axis, else as sk_land says. */
+/** The index after a step: behind the cube's face where the ray leaves it `through` this axis, else as
+ * sk_land says. */
 SK_FUNCTION sk_iN sk_land_lanes(sk_axis_lanes a, sk_iN low, sk_iN through, sk_fN w) {
     const sk_fN index = sk_lanes_to_float(a.index), end = sk_lanes_to_float(sk_max_i(low, a.last));
     const sk_fN at = a.origin - w * a.speed;
     const sk_fN ahead = sk_select_f(at < index, at, index), inside = sk_select_f(ahead > end, ahead, end);
     const sk_iN cell = sk_lanes_to_int(inside);
-    return sk_select_i(through, low - 1, cell + (sk_lanes_to_float(cell) > inside)); /* rounded down: a mask is -1 */
+    return sk_select_i(through, low - 1,
+                       cell + (sk_lanes_to_float(cell) > inside)); /* rounded down: a mask is -1 */
 }
 
 /** sk_leave for the lanes in `moving`. The mask of those that have not come to their end. */
 SK_FUNCTION sk_iN sk_leave_lanes(sk_place_lanes* at, sk_iN moving, sk_fN last) {
-    const sk_iN low_x = at->x.index & ~at->cube, low_y = at->y.index & ~at->cube, low_z = at->z.index & ~at->cube;
-    const sk_fN wx = sk_exit_lanes(at->x, low_x), wy = sk_exit_lanes(at->y, low_y), wz = sk_exit_lanes(at->z, low_z);
+    const sk_iN low_x = at->x.index & ~at->cube, low_y = at->y.index & ~at->cube,
+                low_z = at->z.index & ~at->cube;
+    const sk_fN wx = sk_exit_lanes(at->x, low_x), wy = sk_exit_lanes(at->y, low_y),
+                wz = sk_exit_lanes(at->z, low_z);
     const sk_iN through_x = (wx <= wy) & (wx <= wz), through_y = ~through_x & (wy <= wz);
     const sk_fN w = sk_select_f(through_x, wx, sk_select_f(through_y, wy, wz));
     const sk_iN goes = moving & ~(last <= w);
@@ -77,7 +82,8 @@ typedef struct sk_found_lanes {
     sk_iN bit;
 } sk_found_lanes;
 
-SK_FUNCTION sk_found_lanes sk_find_blocks(SetkaGridHeader grid, sk_grid_tables tables, sk_iN x, sk_iN y, sk_iN z) {
+SK_FUNCTION sk_found_lanes sk_find_blocks(SetkaGridHeader grid, sk_grid_tables tables, sk_iN x, sk_iN y,
+                                          sk_iN z) {
     const sk_dims dims = sk_block_dims(sk_cell_dims(grid));
     const sk_iN number = ((z >> 2) * (sk_i32)dims.y + (y >> 2)) * (sk_i32)dims.x + (x >> 2);
     const sk_columns block = sk_gather4((SK_GLOBAL const float*)tables.blocks, number, 4u);
@@ -100,7 +106,8 @@ SK_FUNCTION sk_iN sk_look_lanes(SetkaGridHeader grid, sk_grid_tables tables, sk_
     if (sk_any_lane(empty)) {
         const sk_dims dims = sk_block_dims(sk_block_dims(sk_cell_dims(grid)));
         const sk_iN group = ((z >> 4) * (sk_i32)dims.y + (y >> 4)) * (sk_i32)dims.x + (x >> 4);
-        const sk_iN blocks = sk_gather_i(tables.groups, group, 2u) | sk_gather_i(tables.groups + 1, group, 2u);
+        const sk_iN blocks =
+            sk_gather_i(tables.groups, group, 2u) | sk_gather_i(tables.groups + 1, group, 2u);
         at->cube = at->cube | ((blocks == zero) & 15);
     }
     return (word >> (in.bit & 31) & 1) != zero;
@@ -119,10 +126,13 @@ typedef struct sk_lists {
 } sk_lists;
 
 /** The lists of the lanes that have one, else empty ones. */
-SK_FUNCTION sk_lists sk_open_lists(SetkaGridHeader grid, sk_grid_tables tables, sk_place_lanes at, sk_iN listed) {
-    const sk_found_lanes in = sk_find_blocks(grid, tables, at.x.index ^ at.x.flip, at.y.index ^ at.y.flip, at.z.index ^ at.z.flip);
+SK_FUNCTION sk_lists sk_open_lists(SetkaGridHeader grid, sk_grid_tables tables, sk_place_lanes at,
+                                   sk_iN listed) {
+    const sk_found_lanes in =
+        sk_find_blocks(grid, tables, at.x.index ^ at.x.flip, at.y.index ^ at.y.flip, at.z.index ^ at.z.flip);
     const sk_iN below = (sk_same_i(1) << (in.bit & 31)) - 1, in_high = in.bit > sk_same_i(31);
-    const sk_iN rank = sk_count_bits(in.mask_low & (below | in_high)) + sk_count_bits(in.mask_high & below & in_high);
+    const sk_iN rank =
+        sk_count_bits(in.mask_low & (below | in_high)) + sk_count_bits(in.mask_high & below & in_high);
     const sk_iN record = listed & (in.first + rank);
     SK_GLOBAL const sk_u32* records = (SK_GLOBAL const sk_u32*)tables.cells;
     sk_lists r;
@@ -151,9 +161,9 @@ typedef struct sk_flight {
     sk_ray_lanes ray;
     sk_place_lanes at;
     sk_best_lanes best;
-    sk_fN w1, last;    /* the end of the ray; nothing beyond `last` is of interest */
-    sk_iN walking;     /* mask: has not come to its end */
-    sk_iN listed;      /* mask: stands at a cell with a list that is not tested */
+    sk_fN w1, last; /* the end of the ray; nothing beyond `last` is of interest */
+    sk_iN walking;  /* mask: has not come to its end */
+    sk_iN listed;   /* mask: stands at a cell with a list that is not tested */
     sk_iN skip;
 } sk_flight;
 
@@ -197,9 +207,11 @@ SK_FUNCTION sk_best_lanes sk_test_candidates(sk_grid_tables tables, sk_trace_par
         sk_test_view_lanes(ray, params.unit, sk_view_triangle_lanes(ray, tables.triangles, number & some));
     sk_iN better = some & hit.hits & sk_is_better_lanes(hit, number, best);
     if (params.filters != 0u) {
-#define SK_VISIBLE(k)                                                                                             \
-    (sk_lane(better, k) != 0 &&                                                                                   \
-     sk_is_visible(params, tables.instance_starts, tables.instances, (sk_u32)sk_lane(number, k))) ? -1 : 0
+#define SK_VISIBLE(k)                                                                             \
+    (sk_lane(better, k) != 0 &&                                                                   \
+     sk_is_visible(params, tables.instance_starts, tables.instances, (sk_u32)sk_lane(number, k))) \
+        ? -1                                                                                      \
+        : 0
         better = SK_INTS(SK_VISIBLE);
 #undef SK_VISIBLE
     }
@@ -212,11 +224,11 @@ SK_FUNCTION sk_best_lanes sk_test_candidates(sk_grid_tables tables, sk_trace_par
 }
 
 /**
- * Tests the lists of all lanes, the next triangle of each at a time. The accurate test is long and few triangles come to it, so a
- * lane's candidate waits until the lists are through, or the lane has another.
+ * Tests the lists of all lanes, the next triangle of each at a time. The accurate test is long and few
+ * triangles come to it, so a lane's candidate waits until the lists are through, or the lane has another.
  */
-SK_FUNCTION sk_best_lanes sk_test_lists(sk_grid_tables tables, sk_trace_params params, sk_ray_lanes ray, sk_iN skip,
-                                        sk_lists lists, sk_best_lanes best) {
+SK_FUNCTION sk_best_lanes sk_test_lists(sk_grid_tables tables, sk_trace_params params, sk_ray_lanes ray,
+                                        sk_iN skip, sk_lists lists, sk_best_lanes best) {
     const sk_iN none = sk_same_i((sk_i32)SETKA_NO_HIT);
     sk_best_lanes r = best;
     sk_iN candidate = none, here = lists.here, testing = here != lists.end;
@@ -238,8 +250,8 @@ SK_FUNCTION sk_best_lanes sk_test_lists(sk_grid_tables tables, sk_trace_params p
 }
 
 /**
- * Walks the grid, past empty space in large steps and past the triangles `skip`. `any`, a compile-time choice of the entry, ends a lane at
- * the first hit it finds.
+ * Walks the grid, past empty space in large steps and past the triangles `skip`. `any`, a compile-time choice
+ * of the entry, ends a lane at the first hit it finds.
  */
 SK_FUNCTION sk_best_lanes sk_walk_grid_lanes(SetkaGridHeader grid, sk_trace_params params, sk_ray_lanes ray,
                                              sk_grid_tables tables, sk_iN skip, const int any) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /**
- * What do SK_WIDTH rays look like to the kernels? The working rays of ray.h, one a lane, by the same operations in the same order. Lanes
- * are masked where ray.h branches.
+ * What do SK_WIDTH rays look like to the kernels? The working rays of ray.h, one a lane, by the same
+ * operations in the same order. Lanes are masked where ray.h branches.
  */
 #ifndef SETKA_DEVICE_TRACE_RAY_LANES_H
 #define SETKA_DEVICE_TRACE_RAY_LANES_H
@@ -15,7 +15,7 @@ typedef struct sk_ray_lanes {
     sk_fN w0, w1;
     sk_fN pre, scale, shift;
     sk_fN tmin, tmax;
-    sk_iN along_x, along_y;    /* masks: the direction's largest axis; z if neither */
+    sk_iN along_x, along_y; /* masks: the direction's largest axis; z if neither */
     sk_fN sx, sy, sz;
     sk_iN valid;
 } sk_ray_lanes;
@@ -40,7 +40,8 @@ SK_FUNCTION sk_fN sk_inverse_lanes(sk_fN d) {
     return sk_select_f(sk_abs_f(d) < sk_same_f(SK_PARALLEL), sk_same_f(0.0f), 1.0f / d);
 }
 
-SK_FUNCTION sk_span_lanes sk_clip_axis_lanes(sk_span_lanes span, sk_fN q, sk_fN d, sk_fN inverse, float size, float pad) {
+SK_FUNCTION sk_span_lanes sk_clip_axis_lanes(sk_span_lanes span, sk_fN q, sk_fN d, sk_fN inverse, float size,
+                                             float pad) {
     const float top = size + pad;
     const sk_iN parallel = sk_abs_f(d) < sk_same_f(SK_PARALLEL);
     const sk_iN inside = (sk_same_f(-pad) <= q) & (q <= sk_same_f(top));
@@ -53,7 +54,8 @@ SK_FUNCTION sk_span_lanes sk_clip_axis_lanes(sk_span_lanes span, sk_fN q, sk_fN 
     return r;
 }
 
-SK_FUNCTION sk_span_lanes sk_clip_box_lanes(sk_trace_params params, sk_vec3N o, sk_vec3N d, sk_vec3N inverse) {
+SK_FUNCTION sk_span_lanes sk_clip_box_lanes(sk_trace_params params, sk_vec3N o, sk_vec3N d,
+                                            sk_vec3N inverse) {
     sk_span_lanes r;
     r.w0 = sk_same_f(sk_bits_float(0xff800000u));
     r.w1 = sk_same_f(sk_bits_float(0x7f800000u));
@@ -76,7 +78,8 @@ SK_FUNCTION sk_fN sk_straighten_lanes(sk_fN d) {
 }
 
 /** The working rays of rays[at]. */
-SK_FUNCTION sk_ray_lanes sk_prepare_ray_lanes(sk_trace_params params, SK_GLOBAL const SetkaRay* rays, sk_iN at) {
+SK_FUNCTION sk_ray_lanes sk_prepare_ray_lanes(sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
+                                              sk_iN at) {
     sk_ray_lanes r;
     const sk_columns start = sk_gather4((SK_GLOBAL const float*)rays, at, 8u);
     const sk_columns way_on = sk_gather4((SK_GLOBAL const float*)rays + 4, at, 8u);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /**
- * Does each of SK_WIDTH rays hit its triangle, and where? The test of triangle.h, a ray and a triangle of its own in each lane, by the same
- * operations in the same order.
+ * Does each of SK_WIDTH rays hit its triangle, and where? The test of triangle.h, a ray and a triangle of its
+ * own in each lane, by the same operations in the same order.
  */
 #ifndef SETKA_DEVICE_TRACE_TRIANGLE_LANES_H
 #define SETKA_DEVICE_TRACE_TRIANGLE_LANES_H
@@ -66,7 +66,8 @@ SK_FUNCTION sk_iN sk_side_lanes(sk_fN edge, sk_fN xa, sk_fN ya, sk_fN xb, sk_fN 
 }
 
 /** Triangles `number` of the table as their rays see them. */
-SK_FUNCTION sk_view_lanes sk_view_triangle_lanes(sk_ray_lanes ray, SK_GLOBAL const float* triangles, sk_iN number) {
+SK_FUNCTION sk_view_lanes sk_view_triangle_lanes(sk_ray_lanes ray, SK_GLOBAL const float* triangles,
+                                                 sk_iN number) {
     const sk_columns p = sk_gather4(triangles, number, 9u), q = sk_gather4(triangles + 4, number, 9u);
     const sk_fN last = sk_gather_f(triangles + 8, number, 9u);
     const sk_vec3N v0 = sk_turn_axes(ray, sk_make3_f(p.a - ray.o.x, p.b - ray.o.y, p.c - ray.o.z));
@@ -120,7 +121,8 @@ SK_FUNCTION sk_hit_lanes sk_test_view_lanes(sk_ray_lanes ray, float unit, sk_vie
 SK_FUNCTION sk_iN sk_is_better_lanes(sk_hit_lanes hit, sk_iN number, sk_best_lanes best) {
     const sk_i32 sign = (sk_i32)0x80000000u; /* numbers are unsigned; lanes compare as signed */
     const sk_iN before = (number ^ sign) < (best.triangle ^ sign);
-    return (hit.w < best.w) | ((hit.w == best.w) & before) | (best.triangle == sk_same_i((sk_i32)SETKA_NO_HIT));
+    return (hit.w < best.w) | ((hit.w == best.w) & before) |
+           (best.triangle == sk_same_i((sk_i32)SETKA_NO_HIT));
 }
 
 SK_FUNCTION sk_best_lanes sk_no_hit_lanes(void) {
