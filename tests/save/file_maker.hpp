@@ -27,7 +27,8 @@ struct Model {
     std::vector<SetkaInstance> instances;
 };
 
-[[nodiscard]] Model model_of(const oracle::Scene& scene, const oracle::GridOptions& options = {});
+/// By default so coarse that some cells have several triangles.
+[[nodiscard]] Model model_of(const oracle::Scene& scene, const oracle::GridOptions& options = {.density = 4});
 
 /// Another size of cells, with what follows from it.
 void scale_cells(Model& model, float factor);
