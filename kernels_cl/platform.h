@@ -7,7 +7,12 @@
 #pragma OPENCL FP_CONTRACT OFF
 
 #define SK_KERNEL __kernel
+#if defined(SK_WIDTH) && SK_WIDTH > 1
+/* PoCL's compiler leaves walks of many vectors as calls. */
 #define SK_FUNCTION static inline __attribute__((always_inline))
+#else
+#define SK_FUNCTION static inline
+#endif
 #define SK_GLOBAL __global
 #define SK_LOCAL __local
 #define SK_LOCAL_STORAGE __local

@@ -22,7 +22,7 @@
  *   sk_atomic_min(p, v) sk_atomic_max(p, v) sk_atomic_add(p, v)  on sk_u32 in global or local memory, return what was there;
  *   sk_atomic_or(p, v)                                           order-free uses only
  *
- * Where SK_WIDTH is 8 (src/device/lanes.h), operators on vectors with the meaning they have in OpenCL C, scalars on one side
+ * Where SK_WIDTH is 8 (src/device/lanes.h), operators on vectors work on each element, comparisons give masks, scalars on one side
  * included, `mask ? a : b` with a mask of all bits or none, and:
  *   sk_fN sk_iN sk_f4        8 floats, 8 sk_i32, 4 floats
  *   sk_make_f(a, …, h) sk_make_i(a, …, h) sk_lane(v, k)          k is a literal

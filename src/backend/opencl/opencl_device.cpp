@@ -70,6 +70,13 @@ OpenClDevice::OpenClDevice(cl::Device device, DeviceInfo info, const DeviceOptio
     options_ = resolve_options(options, info_, capabilities());
 }
 
+std::uint32_t OpenClDevice::width() const noexcept {
+    // Eight floats fill a register of AVX, two of SSE or Neon. Only compilers that are known to cope: Mesa's rusticl cannot
+    // translate the reductions of vectors, and Oclgrind executes vectors no faster.
+    const bool copes = info_.platform.starts_with("Portable Computing Language") || info_.platform.starts_with("Intel(R)");
+    return info_.type == DeviceType::Cpu && copes ? 8 : 1;
+}
+
 void OpenClDevice::build_program() {
     const auto start = std::chrono::steady_clock::now();
     // Contraction is switched off in the source; no option may ever relax the arithmetic.
