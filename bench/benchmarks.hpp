@@ -26,7 +26,7 @@ struct Bench {
     FixtureSlot slot;
 };
 
-/// scan/ELEMENTS/TARGET, sort/…, reduce/…. The bench has to outlive the run.
+/// scan/ELEMENTS/TARGET and sort/…. The bench has to outlive the run.
 void register_primitives(Bench& bench);
 
 /// build/TARGET/SCENE, trace/KIND/STEP/DEVICE/SCENE, frame/TARGET/SCENE, by scene, then by device, then by

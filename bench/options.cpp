@@ -86,7 +86,7 @@ constexpr Option own_options[] = {
          o.steps.clear();
          for (const std::string& step : split(name, value)) o.steps.push_back(parse_step(name, step));
      }},
-    {"--elements", "sizes of scan, sort and reduce, with commas; default: 65536,1048576,16777216",
+    {"--elements", "sizes of scan and sort, with commas; default: 65536,1048576,16777216",
      [](Options& o, const std::string& name, const std::string& value) {
          o.elements.clear();
          for (const std::string& n : split(name, value))

@@ -21,7 +21,7 @@ struct Options {
     std::vector<float> densities{GridOptions{}.density};  ///< of the grids that are timed
     std::uint32_t size = 1024;           ///< rays along each side of the square picture
     std::vector<GridStep> steps{GridStep::Dda, GridStep::BranchFree};
-    std::vector<std::uint32_t> elements{1u << 16, 1u << 20, 1u << 24};  ///< sizes of scan, sort and reduce
+    std::vector<std::uint32_t> elements{1u << 16, 1u << 20, 1u << 24};  ///< sizes of scan and sort
 };
 
 /// Takes setka's options out of the arguments and leaves the others. Throws InvalidArgument for a value out

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// How fast are the primitives? Scan, sort and reduce of random input, compared with std:: before they are
-/// timed.
+/// How fast are the primitives? Scan and sort of random input, compared with std:: before they are timed.
 #include <algorithm>
 #include <bit>
 #include <memory>
@@ -9,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "algo/reduce.hpp"
 #include "algo/scan.hpp"
 #include "algo/sort.hpp"
 #include "backend/device.hpp"
@@ -113,35 +111,6 @@ class Sort final : public Primitive {
     Buffer<std::uint32_t> source_keys_, source_values_, keys_, values_;
 };
 
-class Reduce final : public Primitive {
-  public:
-    Reduce(Target& target, std::uint32_t n) : Primitive(target, n) {
-        workload::Random random(seed);
-        std::vector<float> triangles(std::size_t(n) * 9);
-        std::ranges::generate(triangles, [&] { return 2 * random.unit() - 1; });
-        triangles_ = queue_.upload(std::span(triangles), "triangles");
-        run();
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            std::vector<float> values;
-            for (std::size_t i = axis; i < triangles.size(); i += 3) values.push_back(triangles[i]);
-            const auto [lower, upper] = std::ranges::minmax(values);
-            require(bounds_.lower[axis] == lower && bounds_.upper[axis] == upper, "reduce",
-                    "std::ranges::minmax");
-        }
-    }
-    [[nodiscard]] Work work() const override {
-        return {"Mtri/s", millions(n_), 9 * std::uint64_t(n_) * sizeof(float)};
-    }
-    void run() override {
-        queue_.impl().begin_stage("reduce");
-        bounds_ = reduce_bounds(queue_, triangles_, n_);
-    }
-
-  private:
-    Buffer<float> triangles_;
-    Bounds bounds_{};
-};
-
 template <typename T>
 void register_primitive(Bench& bench, Target& target, const char* kind, std::uint32_t n) {
     const std::string name = std::string(kind) + '/' + std::to_string(n) + '/' + target.name();
@@ -161,7 +130,6 @@ void register_primitives(Bench& bench) {
         for (Target& target : bench.targets) {
             register_primitive<Scan>(bench, target, "scan", n);
             register_primitive<Sort>(bench, target, "sort", n);
-            register_primitive<Reduce>(bench, target, "reduce", n);
         }
 }
 

@@ -69,9 +69,7 @@ void Subject::validate(float density) {
 
 void Subject::rebuild() {
     grid_.reset();
-    GridPlan plan = builder_->plan(queue_, scene_);
-    row_count_ = plan.row_count();
-    grid_ = builder_->build(queue_, std::move(plan));
+    grid_ = builder_->build(queue_, scene_);
 }
 
 void Subject::trace(const TraceCase& what, GridStep step) {

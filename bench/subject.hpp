@@ -56,7 +56,6 @@ class Subject final : public Fixture {
     [[nodiscard]] Queue& queue() noexcept { return queue_; }
     [[nodiscard]] const workload::StandardRays& rays() const noexcept { return rays_; }
     [[nodiscard]] const Grid& grid() const noexcept { return *grid_; }
-    [[nodiscard]] std::uint64_t row_count() const noexcept { return row_count_; }
 
     /// Replaces the grid by a new one, with only one of them in memory at a time.
     void rebuild();
@@ -77,7 +76,6 @@ class Subject final : public Fixture {
     DeviceScene scene_;
     std::unique_ptr<GridBuilder> builder_;
     std::optional<float> density_;  ///< of a grid that was checked
-    std::uint64_t row_count_ = 0;
     std::optional<Grid> grid_;
     workload::StandardRays rays_;
     Buffer<Hit> hits_;

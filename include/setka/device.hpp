@@ -52,7 +52,7 @@ struct DeviceInfo {
 /// Why backends or devices are missing from enumerate_devices(), one sentence each; empty if nothing is missing.
 [[nodiscard]] std::vector<std::string> enumeration_notes();
 
-/// How scan, sort and reduce are done on the device. It never changes a result.
+/// How scan, sort and the bounds of a scene are done on the device. It never changes a result.
 enum class PrimitiveShape {
     Auto,      ///< Library where the backend has one, else Portable
     Library,   ///< the vendor's library for scan and sort: CUB on CUDA; Unsupported elsewhere

@@ -2,11 +2,11 @@
 #include "accel/world_geometry.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <string>
 
-#include "algo/reduce.hpp"
 #include "core/launch.hpp"
 #include "setka/error.hpp"
 
@@ -26,6 +26,11 @@ struct TransformLayout {
                                             (std::uint64_t(group_size) * elements));
     }
 };
+
+/// The inverse of sk_ordered in device/grid/build.h.
+float float_of_ordered(std::uint32_t ordered) noexcept {
+    return std::bit_cast<float>((ordered & 0x80000000u) ? ordered & 0x7fffffffu : ~ordered);
+}
 
 }  // namespace
 

@@ -7,7 +7,7 @@
 
 namespace setka {
 
-/// Transforms every triangle and reduces their bounds; waits. Throws InvalidData that names the first triangle that is not
+/// Transforms every triangle and finds their bounds; waits. Throws InvalidData that names the first triangle that is not
 /// finite in world space, or a scene too large to calculate with (an extent above 1e20).
 [[nodiscard]] WorldGeometry transform_scene(Queue& queue, const DeviceScene& scene);
 

@@ -136,7 +136,7 @@ Command add_compare_command(CLI::App& program) {
     options->input.add_to(*app);
     add_parsed(
         *app, "--devices", options->devices, parse_rows, "ID[/SHAPE],...",
-        "two or more devices, the first is the reference; SHAPE says how scan, sort and reduce are done: " +
+        "two or more devices, the first is the reference; SHAPE says how scan, sort and bounds are done: " +
             primitive_shape_words() +
             ". Without this option: every device, CUDA devices as /library and as /portable; an OpenCL "
             "device "

@@ -145,7 +145,7 @@ void DeviceSelection::add_to(CLI::App& app) {
                                 {"portable", PrimitiveShape::Portable},
                                 {"serial", PrimitiveShape::Serial},
                                 {"group", PrimitiveShape::Group}},
-                               "how scan, sort and reduce are laid out")
+                               "how scan, sort and bounds are laid out")
         ->group(group);
     add_parsed(app, "--memory-budget", options.memory_budget_bytes, parse_bytes, "BYTES",
                "most bytes to hold on the device: a number with K, M, G or nothing")

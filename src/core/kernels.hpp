@@ -9,7 +9,6 @@
     X(probe_rounding) X(probe_layout) X(probe_barrier)                                                     \
     X(scan_reduce) X(scan_spine) X(scan_apply)                                                             \
     X(sort_count) X(sort_scatter)                                                                          \
-    X(reduce_bounds) X(reduce_bounds_partial)                                                              \
     X(grid_transform) X(grid_rows) X(grid_row_list) X(grid_count) X(grid_emit)                             \
     X(grid_cells_clear) X(grid_cells_mark) X(grid_cells_close) X(grid_cells_search)                        \
     X(grid_mark)                                                                                           \

@@ -7,7 +7,6 @@
 #include "kernels_cl/blocks.cl"
 #include "kernels_cl/grid.cl"
 #include "kernels_cl/probe.cl"
-#include "kernels_cl/reduce.cl"
 #include "kernels_cl/scan.cl"
 #include "kernels_cl/shade.cl"
 #include "kernels_cl/sort.cl"

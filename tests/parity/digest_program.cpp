@@ -132,7 +132,7 @@ class AllKernels {
         print_line(name + " costs", hash(queue_.download(costs)));
     }
 
-    /// More triangles than one group of 32 reduces.
+    /// More triangles than one group of 32 finds the bounds of.
     void print_bounds() {
         const setka::Scene scene = support::ball(600);
         const auto rays = support::adversarial_rays(oracle::make_world(scene), 5, 6);

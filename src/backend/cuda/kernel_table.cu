@@ -7,7 +7,6 @@
 #include "blocks.cu"
 #include "grid.cu"
 #include "probe.cu"
-#include "reduce.cu"
 #include "scan.cu"
 #include "shade.cu"
 #include "sort.cu"

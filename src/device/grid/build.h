@@ -9,7 +9,17 @@
 
 #include "device/grid/cells.h"
 #include "device/grid/limits.h"
-#include "device/reduce.h"
+#include "device/math.h"
+#include "device/scan.h"
+
+/** Words of a box: three minima and three maxima. */
+#define SK_BOUNDS_VALUES 6u
+
+/** An unsigned integer that orders as the float does, because atomics know no floats; -0 comes just before 0. */
+SK_FUNCTION sk_u32 sk_ordered(float f) {
+    const sk_u32 bits = sk_float_bits(f);
+    return (bits & 0x80000000u) != 0u ? ~bits : bits | 0x80000000u;
+}
 
 /** The box of what a work-item has seen. */
 typedef struct sk_extremes {
