@@ -16,9 +16,9 @@ constexpr std::uint64_t reach_words = 4, row_words = 2, piece_words = 4;
 /// A number of each buffer in a piece.
 constexpr std::uint32_t piece_numbers = 64;
 
-/// The longest list that one work-item puts in order.
+/// The longest list that one work-item puts in order: on drivers that end loops early (algo/shape.hpp) some ten thousand steps.
 std::uint32_t longest_alone(const Device& device) {
-    return device.options().primitives == PrimitiveShape::Serial ? 4096 : 32;
+    return device.options().primitives == PrimitiveShape::Serial ? 512 : 32;
 }
 
 /// Rows of large triangles that are provided for before any is seen: one a triangle, and those of some giants.

@@ -3,7 +3,7 @@
  * How does a list that was filled in any order become ascending? Short ones are a work-item's each. Longer ones are cut into pieces
  * of 64 numbers: each number finds its place in its piece by counting the smaller ones, then its place in ever longer runs by searching
  * the run beside its own. Numbers of a list are all different, so places are too. What is long depends on the device: a list
- * of 64 keeps a GPU waiting, one of thousands is nothing to a CPU.
+ * of 64 keeps a GPU waiting, one of hundreds is nothing to a CPU.
  */
 #ifndef SETKA_DEVICE_GRID_SORT_LISTS_H
 #define SETKA_DEVICE_GRID_SORT_LISTS_H
