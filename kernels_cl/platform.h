@@ -20,7 +20,7 @@
 #define SK_ALIGNED(bytes) __attribute__((aligned(bytes)))
 #define SK_BARRIER() barrier(CLK_LOCAL_MEM_FENCE)
 
-/* Given by the host: 8 and 1 for CPUs, 1 and 32 for GPUs. No result depends on them. */
+/* Given by the host: 8 and 1 for CPUs, 1 and 32 for GPUs, else 1 and 1. No result depends on them. */
 #ifndef SK_WIDTH
 #define SK_WIDTH 1u
 #endif
@@ -68,12 +68,10 @@ typedef int8 sk_iN;
 #define sk_lanes_as_float(i) as_float8(i)
 /* Compilers of OpenCL C are made of Clang. */
 #define sk_shuffle __builtin_shufflevector
-#if __has_builtin(__builtin_reduce_or) && __has_builtin(__builtin_reduce_add) /* Clang 15: one instruction for the first */
+#if __has_builtin(__builtin_reduce_or) /* Clang 15: one instruction */
 #define sk_lanes_or(i) __builtin_reduce_or(i)
-#define sk_lanes_sum(i) __builtin_reduce_add(i)
 #else
 #define sk_lanes_or(i) ((((i).s0 | (i).s1) | ((i).s2 | (i).s3)) | (((i).s4 | (i).s5) | ((i).s6 | (i).s7)))
-#define sk_lanes_sum(i) ((((i).s0 + (i).s1) + ((i).s2 + (i).s3)) + (((i).s4 + (i).s5) + ((i).s6 + (i).s7)))
 #endif
 #endif
 

@@ -39,7 +39,6 @@ class EmbreeScene {
 
     [[nodiscard]] RTCScene handle() const noexcept { return scene_.get(); }
     [[nodiscard]] std::uint64_t triangle_count() const noexcept { return triangle_count_; }
-    [[nodiscard]] std::uint64_t vertex_count() const noexcept { return vertex_count_; }
     /// Vertices, indices and the tree.
     [[nodiscard]] MemoryMonitor& memory() noexcept { return *memory_; }
 

@@ -52,7 +52,7 @@ struct DeviceInfo {
 /// Why backends or devices are missing from enumerate_devices(), one sentence each; empty if nothing is missing.
 [[nodiscard]] std::vector<std::string> enumeration_notes();
 
-/// How scan, sort and the bounds of a scene are done on the device. It never changes a result.
+/// How scans, sorts and the bounds of a scene are done on the device, and how much one work-item does. It never changes a result.
 enum class PrimitiveShape {
     Auto,      ///< Library where the backend has one, else Portable
     Library,   ///< the vendor's library for scan and sort: CUB on CUDA; Unsupported elsewhere
@@ -78,7 +78,8 @@ enum class ParityRequirement {
 
 /// How a device is opened. The defaults are right for use; the rest serves tests and measurements.
 struct DeviceOptions {
-    /// Work-items in a group of per-element kernels: a power of two up to 256; 0 picks 64 on a CPU and 128 elsewhere.
+    /// Work-items in a group of per-element kernels: a power of two up to 256; 0 picks 64 on a CPU and 128 elsewhere. Kernels that
+    /// trace through grids with the DDA step run in groups of 32 on GPUs.
     std::uint32_t work_group_size = 0;
     PrimitiveShape primitives = PrimitiveShape::Auto;
     /// Bytes that setka may hold on the device at a time; 0 picks three quarters of the device's memory.

@@ -45,7 +45,8 @@ struct GridResolution {
 
 struct GridCount;  // opaque to users
 
-/// A grid that is counted but not yet written: every size is known, nothing large is allocated.
+/// A grid that is counted but not yet written: every size is known, and what counting found is held, on the device; its tables are not
+/// allocated. Makes one grid.
 class GridPlan {
   public:
     [[nodiscard]] const ::SetkaGridHeader& header() const noexcept { return header_; }
@@ -56,6 +57,10 @@ class GridPlan {
     [[nodiscard]] std::uint64_t table_bytes() const noexcept { return table_bytes_; }
     /// The most bytes live at any time of plan() and build(), tables included, beyond the scene itself. Exact.
     [[nodiscard]] std::uint64_t peak_bytes() const noexcept { return peak_bytes_; }
+
+    GridPlan() = default;
+    GridPlan(GridPlan&&) = default;
+    GridPlan& operator=(GridPlan&&) = default;
 
   private:
     friend class UniformGridBuilder;
@@ -81,7 +86,7 @@ struct CompactTables {
     Buffer<std::uint32_t> groups;      ///< 2 words for each 4 x 4 x 4 blocks, a bit for each that is not empty
     Buffer<std::uint32_t> cells;       ///< 2 words each
     Buffer<std::uint32_t> references;  ///< block after block
-    std::uint32_t longest_list = 0;    ///< 0 where no list is long
+    std::uint32_t longest_list = 0;    ///< 0 where no list is long, else the longest one's length
 };
 
 /// The finished grid.
@@ -99,7 +104,8 @@ class Grid final : public Structure {
     /// The paper's tables, made anew by each call on the device. They need 8 bytes a cell and 4 a reference, and 4 bytes a cell more
     /// meanwhile.
     [[nodiscard]] GridTables tables(Queue& queue) const;
-    /// XXH3-128 over header (64 bytes), offsets, counts and references of tables(), little-endian, in this order. Waits and downloads.
+    /// XXH3-128 over header (64 bytes), offsets, counts and references of tables(), little-endian, in this order. Waits and downloads; needs
+    /// device memory as tables() does, and throws OutOfMemory without it.
     [[nodiscard]] Digest digest(Queue& queue) const;
 
   private:

@@ -24,7 +24,7 @@ namespace setka {
 
 /// Writes a grid. The file appears complete or not at all, also where it is cancelled, and replaces an older
 /// one in one step. Waits and downloads. Throws InvalidArgument if the file cannot be written, with the reason, or if the grid itself
-/// breaks an invariant.
+/// breaks an invariant; OutOfMemory if the device has no room for Grid::tables().
 void save(Queue& queue, const Grid& grid, const std::filesystem::path& file);
 
 /// The bytes that save() writes.

@@ -13,6 +13,8 @@
 #include "accel/sorted_lists.hpp"
 #include "accel/world_geometry.hpp"
 #include "backend/device.hpp"
+#include "device/grid/limits.h"
+#include "setka/error.hpp"
 #include "setka/grid.hpp"
 
 namespace setka {
@@ -79,6 +81,8 @@ class UniformGridBuilder final : public GridBuilder {
     [[nodiscard]] Grid build(Queue& queue, GridPlan plan) const override {
         const ::SetkaGridHeader& header = plan.header_;
         const auto count = std::exchange(plan.count_, {});
+        if (!count)
+            throw Error(ErrorCategory::InvalidArgument, "plan was built or moved from before; it makes one grid");
         if (count->scattered) {
             CompactTables tables =
                 build_scattered(queue, plan.geometry_, header, std::move(*count->scattered));
@@ -104,6 +108,8 @@ class UniformGridBuilder final : public GridBuilder {
             if (const auto& scattered = plan.count_->scattered) {
                 plan.row_count_ = scattered->rows;
                 plan.table_bytes_ = table_bytes_of(plan.geometry_, header, scattered->cells);
+                limits.check_allocation(std::uint64_t(scattered->cells) * cell_words, "cells");
+                limits.check_allocation(std::uint64_t(scattered->pieces) * SK_PIECE, "sorted runs");
                 return scattered_bytes(queue.device(), header, *scattered);
             }
         }
@@ -111,6 +117,7 @@ class UniformGridBuilder final : public GridBuilder {
             plan.count_->sorted.emplace(count_sorted(queue, plan.geometry_, header, limits));
         plan.row_count_ = sorted.rows;
         plan.table_bytes_ = table_bytes_of(plan.geometry_, header, sorted.cells);
+        limits.check_allocation(std::uint64_t(sorted.cells) * cell_words, "cells");
         return std::max(attempt_bytes, sorted_bytes(queue, header, sorted));
     }
 

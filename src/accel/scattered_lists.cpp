@@ -13,8 +13,6 @@ namespace {
 
 constexpr std::uint64_t word = sizeof(std::uint32_t);
 constexpr std::uint64_t reach_words = 4, row_words = 2, piece_words = 4;
-/// A number of each buffer in a piece.
-constexpr std::uint32_t piece_numbers = 64;
 
 /// The longest list that one work-item puts in order: on drivers that end loops early (algo/shape.hpp) some ten thousand steps.
 std::uint32_t longest_alone(const Device& device) {
@@ -24,8 +22,14 @@ std::uint32_t longest_alone(const Device& device) {
 /// Rows of large triangles that are provided for before any is seen: one a triangle, and those of some giants.
 std::uint32_t usual_rows(const ::SetkaGridHeader& header) { return header.triangle_count + 8192; }
 
-/// Work-items for so many rows: few enough to be no matter where there is no row, and sixteen rows each at most.
-std::uint32_t row_items(std::uint32_t capacity) { return capacity / 16 + 1; }
+/// The most pieces that one work-item cuts a list into, for drivers that end loops early (algo/shape.hpp).
+constexpr std::uint32_t most_pieces = 30000;
+
+/// Work-items for so many rows: few enough to be no matter where there is no row, and sixteen rows each at most; four on drivers
+/// that may end loops early.
+std::uint32_t row_items(const Device& device, std::uint32_t capacity) {
+    return capacity / (device.options().primitives == PrimitiveShape::Serial ? 4 : 16) + 1;
+}
 
 /// The most triangles of one launch where a stop can be requested.
 std::uint64_t triangles_a_launch(const Device& device) {
@@ -34,13 +38,14 @@ std::uint64_t triangles_a_launch(const Device& device) {
 
 /// Triangles that one work-item counts: where it does several side by side, enough to find such as are alike.
 std::uint32_t triangles_an_item(const Device& device) {
-    return device.info().type == DeviceType::Cpu ? 64 : 1;
+    if (device.impl()->width() > 1) return 64;
+    return device.options().primitives == PrimitiveShape::Serial ? 8 : 1;
 }
 
 /// Counts every triangle in its cells, and the blocks' cells and pairs.
 BlockTotals count_all(Queue& queue, const WorldGeometry& geometry, const ::SetkaGridHeader& header,
                       ScatteredCount& count) {
-    const std::uint32_t n = header.triangle_count, items = row_items(count.row_capacity);
+    const std::uint32_t n = header.triangle_count, items = row_items(queue.device(), count.row_capacity);
     queue.impl().begin_stage("count");
     count.row_list = queue.make_buffer<std::uint32_t>(count.row_capacity * row_words, "rows of large triangles");
     queue.impl().fill(*count.totals.memory(), 0, count.totals.size_bytes());
@@ -62,11 +67,11 @@ BlockTotals count_all(Queue& queue, const WorldGeometry& geometry, const ::Setka
 void sort_pieces(Queue& queue, const ScatteredCount& count, const Buffer<std::uint32_t>& pieces,
                  const Buffer<std::uint32_t>& references) {
     if (count.pieces == 0) return;
-    const std::uint32_t n = count.pieces * piece_numbers;
+    const std::uint32_t n = count.pieces * SK_PIECE;
     auto from = queue.make_buffer<std::uint32_t>(n, "sorted runs");
     auto to = queue.make_buffer<std::uint32_t>(n, "longer runs");
     launch_items(queue, Kernel::lists_rank, n, pieces, references, from);
-    for (std::uint32_t width = piece_numbers, is_last = 0; is_last == 0; width *= 2) {
+    for (std::uint32_t width = SK_PIECE, is_last = 0; is_last == 0; width *= 2) {
         is_last = count.longest_list <= 2 * std::uint64_t(width) ? 1 : 0;
         launch_items(queue, Kernel::lists_merge, n, width, is_last, pieces, from, to, references);
         std::swap(from, to);
@@ -92,6 +97,9 @@ std::optional<ScatteredCount> count_scattered(Queue& queue, const WorldGeometry&
     BlockTotals totals = count_all(queue, geometry, header, count);
     const auto is_hopeless = [&] {
         return totals.rows >= SK_MOST_ROWS || totals.long_rows >= SK_MOST_LONG_ROWS ||
+               totals.rows * row_words * word > queue.device().info().max_allocation_bytes ||
+               (queue.device().options().primitives == PrimitiveShape::Serial &&
+                totals.longest_list / SK_PIECE > most_pieces) ||
                !limits.fits(world + scattered_count_bytes(queue.device(), header,
                                                           std::max(totals.rows, count.row_capacity)));
     };
@@ -127,7 +135,7 @@ std::uint64_t scattered_bytes(const Device& device, const ::SetkaGridHeader& hea
                               const ScatteredCount& count) {
     return scattered_count_bytes(device, header, count.row_capacity) +
            (group_count(header) * group_words + count.cells * cell_words + header.reference_count +
-            count.pieces * (piece_words + 2 * piece_numbers)) *
+            count.pieces * (piece_words + 2 * SK_PIECE)) *
                word;
 }
 
@@ -146,7 +154,7 @@ CompactTables build_scattered(Queue& queue, const WorldGeometry& geometry, const
     tables.references = queue.make_buffer<std::uint32_t>(header.reference_count, "references");
     launch_range(queue, Kernel::scatter_place, header.triangle_count, triangles_a_launch(queue.device()), header,
                  geometry.triangles, count.counters, count.reaches, tables.references);
-    const std::uint32_t items = std::min(row_items(count.row_capacity), count.rows);
+    const std::uint32_t items = std::min(row_items(queue.device(), count.row_capacity), count.rows);
     launch_range(queue, Kernel::scatter_place_rows, items, rows_a_launch(queue.device(), header) / 16, items,
                  header, geometry.triangles, count.counters, count.row_capacity, count.row_list, count.totals,
                  tables.references);

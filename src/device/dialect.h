@@ -11,7 +11,8 @@
  *   SK_LOCAL_STORAGE         before an array in local memory, at the top of a kernel entry only
  *   SK_RESTRICT              on a pointer that nothing else aliases
  *   SK_ALIGNED(bytes)        before the name of a struct whose members are loaded at once
- *   SK_WIDTH                 how many rays a work-item traces side by side: 1 where work-items run in step, 8 on CPUs
+ *   SK_WIDTH                 how many rays a work-item traces side by side: 1 where work-items run in step, 8 on CPUs whose drivers
+ *                            compile vectors well
  *   SK_TEAM                  how many work-items run in step: 1, or a power of two up to 64 (an integer for #if)
  *   SK_BARRIER()             all work-items of the group; orders local memory; in uniform control flow only
  *   sk_u32 sk_i32 sk_u64     integers
@@ -29,7 +30,7 @@
  *   sk_load_f4(p) sk_store_f(v, p) sk_store_i(v, p)              aligned as one number is; stores to private memory
  *   sk_lanes_to_float(i) sk_lanes_to_int(f)                      conversions; f in the range of sk_i32
  *   sk_lanes_as_int(f) sk_lanes_as_float(i)                      bit casts
- *   sk_lanes_or(i) sk_lanes_sum(i)                               of all lanes
+ *   sk_lanes_or(i)                                               of all lanes
  *   sk_shuffle(v, w, i, …)                                       elements of v and w, which are numbered on
  *
  * Not allowed: fma, mad, min, max, clamp, rsqrt, dot, cross, normalize, pow, exp, log, sin, float3, doubles, sub-groups,

@@ -71,7 +71,6 @@ static inline void sk_store_i(sk_iN v, sk_i32* p) { std::memcpy(p, &v, sizeof v)
 #define sk_lanes_as_float(i) ((sk_fN)(i))
 #define sk_shuffle __builtin_shufflevector
 static inline sk_i32 sk_lanes_or(sk_iN i) { return ((i[0] | i[1]) | (i[2] | i[3])) | ((i[4] | i[5]) | (i[6] | i[7])); }
-static inline sk_i32 sk_lanes_sum(sk_iN i) { return ((i[0] + i[1]) + (i[2] + i[3])) + ((i[4] + i[5]) + (i[6] + i[7])); }
 #endif
 
 static inline sk_u32 sk_atomic_min(sk_u32* target, sk_u32 value) {

@@ -32,8 +32,6 @@ SK_FUNCTION sk_iN sk_finite_f(sk_fN a) { return (sk_lanes_as_int(a) & 0x7f800000
 
 /** True if the mask is set in any lane. */
 SK_FUNCTION int sk_any_lane(sk_iN mask) { return sk_lanes_or(mask) != 0; }
-/** In how many lanes the mask is set. */
-SK_FUNCTION sk_i32 sk_count_lanes(sk_iN mask) { return -sk_lanes_sum(mask); }
 
 SK_FUNCTION sk_vec3N sk_make3_f(sk_fN x, sk_fN y, sk_fN z) {
     sk_vec3N r;

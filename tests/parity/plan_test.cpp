@@ -91,6 +91,22 @@ TEST_P(Plan, IsEnoughAndNotTooMuch) {
 class GridErrors : public support::DeviceTest {};
 SETKA_ON_EVERY_DEVICE(GridErrors);
 
+TEST_P(GridErrors, APlanMakesOneGrid) {
+    setka::Queue queue = device().make_queue();
+    const setka::DeviceScene device_scene(queue, setka::make_scene("cube"));
+    for (const auto tables : {setka::CellTables::Scatter, setka::CellTables::RunBoundaries}) {
+        const auto builder = setka::make_grid_builder({.cell_tables = tables});
+        setka::GridPlan plan = builder->plan(queue, device_scene);
+        EXPECT_GT(builder->build(queue, std::move(plan)).header().reference_count, 0u);
+        try {
+            (void)builder->build(queue, std::move(plan));  // NOLINT(bugprone-use-after-move): what is asked
+            ADD_FAILURE() << "nothing was thrown";
+        } catch (const Error& error) {
+            EXPECT_EQ(error.category(), ErrorCategory::InvalidArgument) << error.what();
+        }
+    }
+}
+
 TEST_P(GridErrors, OptionsOutOfRange) {
     const auto refused = [](const setka::GridOptions& options) {
         try {

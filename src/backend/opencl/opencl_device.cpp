@@ -114,7 +114,7 @@ DeviceCapabilities OpenClDevice::capabilities() const {
     capabilities.kernel_work_group_size = info_.max_work_group_size;
     guarded("asking for the kernels' limits", [&] {
         for (std::size_t i = 0; i < kernel_count; ++i) {
-            if (is_team_kernel(static_cast<Kernel>(i))) continue;
+            if (team_size() > 1 && is_team_kernel(static_cast<Kernel>(i))) continue;
             const cl::size_type limit =
                 cl::Kernel(program_, kernel_names[i]).getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device_);
             capabilities.kernel_work_group_size = static_cast<std::uint32_t>(

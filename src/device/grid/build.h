@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /**
  * How do vertices become the grid's tables? One function a stage of Maltsev & Mikhaylyuk (2012, section 2), each the body of one
- * kernel. Work is spread over rows of cells, not over triangles: a triangle as large as the scene has many rows, and none of
- * them is longer than the grid is wide.
+ * kernel. Sorting pairs spreads work over rows of cells, not over triangles: a triangle as large as the scene has many rows, and none of
+ * them is longer than the grid is wide. Without sorting (scatter.h) the rows of large triangles alone are spread.
  */
 #ifndef SETKA_DEVICE_GRID_BUILD_H
 #define SETKA_DEVICE_GRID_BUILD_H

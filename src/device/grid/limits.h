@@ -20,6 +20,9 @@
 /** A triangle no longer than so many cells along each axis is one work-item's. */
 #define SK_SMALL_BOX 8u
 
+/** Lists that are too long for one work-item are sorted in pieces of so many numbers. */
+#define SK_PIECE 64u
+
 /** Lists longer than this are copied by one work-item a reference, others by one a list. */
 #define SK_LONG_LIST 1024u
 
@@ -27,9 +30,9 @@
 #define SK_TOTAL_CELLS 0u      /* non-empty cells */
 #define SK_TOTAL_PAIRS_LOW 1u
 #define SK_TOTAL_PAIRS_HIGH 2u
-#define SK_TOTAL_LONGEST 3u    /* the longest list's length, if it is above SK_LONG_LIST */
+#define SK_TOTAL_LONGEST 3u    /* the longest list's length, if it is above SK_LONG_LIST or too long for one work-item to sort */
 #define SK_TOTAL_ROWS 4u       /* of large triangles, of which no more are added from SK_MOST_ROWS on */
-#define SK_TOTAL_LONG 5u       /* at least so many times SK_LONG_ROW pairs large triangles have */
+#define SK_TOTAL_LONG 5u       /* about so many times SK_LONG_ROW pairs large triangles have at least */
 #define SK_TOTAL_FOUND 6u      /* the same, of those counted so far */
 #define SK_TOTAL_PIECES 7u     /* of lists that are too long for one work-item */
 #define SK_TOTAL_CUT 8u        /* pieces cut so far */

@@ -9,9 +9,8 @@
 #define SETKA_DEVICE_GRID_SORT_LISTS_H
 
 #include "device/grid/blocks.h"
+#include "device/grid/limits.h"
 #include "device/math.h"
-
-#define SK_PIECE 64u
 
 /** A list that is cut into pieces: piece p of the scratch holds its numbers from (p - first) * SK_PIECE on. */
 typedef struct SK_ALIGNED(16) sk_piece {
