@@ -60,7 +60,8 @@ class Render : public ::testing::Test {
         Renderer renderer(options);
         Image image;
         if (kind == StructureKind::UniformGrid) {
-            const Grid grid = make_grid_builder()->build(queue, device_scene);
+            // Coarse, so that the pictures need more memory than the grid, and budgets divide them.
+            const Grid grid = make_grid_builder({.density = 2})->build(queue, device_scene);
             image = renderer.render(queue, device_scene, grid, *scene.camera);
         } else {
             const BruteForce brute_force = BruteForce::build(queue, device_scene);

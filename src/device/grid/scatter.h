@@ -90,9 +90,10 @@ SK_FUNCTION void sk_list_rows(SetkaGridHeader grid, SK_GLOBAL const float* trian
                               sk_row_list list) {
     const sk_cell_triangle t = sk_load_cell_triangle(grid, triangles + (size_t)triangle * 9u);
     const sk_u32 first = sk_first_row(grid, t), count = sk_last_row(grid, t) - first + 1u;
-    if (*(volatile SK_GLOBAL sk_u32*)(list.totals + SK_TOTAL_LONG) < SK_MOST_LONG_ROWS)
+    /* To add 0 is to read what others may be adding to. */
+    if (sk_atomic_add(list.totals + SK_TOTAL_LONG, 0u) < SK_MOST_LONG_ROWS)
         sk_atomic_add(list.totals + SK_TOTAL_LONG, longest / SK_LONG_ROW);
-    if (*(volatile SK_GLOBAL sk_u32*)(list.totals + SK_TOTAL_ROWS) < SK_MOST_ROWS) {
+    if (sk_atomic_add(list.totals + SK_TOTAL_ROWS, 0u) < SK_MOST_ROWS) {
         const sk_u32 start = sk_atomic_add(list.totals + SK_TOTAL_ROWS, count);
         for (sk_u32 k = 0u; k < count; ++k)
             if (start + k < list.capacity) {
