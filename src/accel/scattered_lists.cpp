@@ -14,7 +14,8 @@ namespace {
 constexpr std::uint64_t word = sizeof(std::uint32_t);
 constexpr std::uint64_t reach_words = 4, row_words = 2, piece_words = 4;
 
-/// The longest list that one work-item puts in order: on drivers that end loops early (algo/shape.hpp) some ten thousand steps.
+/// The longest list that one work-item puts in order: some ten thousand steps on drivers that end loops early
+/// (algo/shape.hpp).
 std::uint32_t longest_alone(const Device& device) {
     return device.options().primitives == PrimitiveShape::Serial ? 512 : 32;
 }

@@ -75,4 +75,17 @@ SK_FUNCTION sk_u32 sk_find_segment(SK_GLOBAL const sk_u32* starts, sk_u32 count,
     return low;
 }
 
+/** The first of n ascending numbers that is not below `number`, and so how many are. */
+SK_FUNCTION sk_u32 sk_lower_bound(SK_GLOBAL const sk_u32* numbers, sk_u32 n, sk_u32 number) {
+    sk_u32 low = 0u, high = n;
+    while (low < high) {
+        const sk_u32 middle = low + (high - low) / 2u;
+        if (numbers[middle] < number)
+            low = middle + 1u;
+        else
+            high = middle;
+    }
+    return low;
+}
+
 #endif

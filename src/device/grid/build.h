@@ -161,19 +161,6 @@ SK_FUNCTION void sk_grid_cells_close(sk_u32 c, SK_GLOBAL const sk_i32* offsets, 
     if (offsets[c] >= 0) counts[c] -= (sk_u32)offsets[c];
 }
 
-/** The first of n ascending cells that is not below `cell`. */
-SK_FUNCTION sk_u32 sk_lower_bound(SK_GLOBAL const sk_u32* cells, sk_u32 n, sk_u32 cell) {
-    sk_u32 low = 0u, high = n;
-    while (low < high) {
-        const sk_u32 middle = low + (high - low) / 2u;
-        if (cells[middle] < cell)
-            low = middle + 1u;
-        else
-            high = middle;
-    }
-    return low;
-}
-
 /** Stage 7 as in the paper: cell c searches for its first pair and for the first pair of the next cell. */
 SK_FUNCTION void sk_grid_cells_search(sk_u32 c, sk_u32 n, SK_GLOBAL const sk_u32* cells, SK_GLOBAL sk_i32* offsets,
                                       SK_GLOBAL sk_u32* counts) {

@@ -95,19 +95,6 @@ SK_FUNCTION void sk_rank_in_piece(sk_u32 e, SK_GLOBAL const sk_piece* pieces, SK
     }
 }
 
-/** How many of the `count` ascending numbers are smaller. */
-SK_FUNCTION sk_u32 sk_count_smaller(SK_GLOBAL const sk_u32* numbers, sk_u32 count, sk_u32 number) {
-    sk_u32 low = 0u, high = count;
-    while (low < high) {
-        const sk_u32 middle = low + (high - low) / 2u;
-        if (numbers[middle] < number)
-            low = middle + 1u;
-        else
-            high = middle;
-    }
-    return low;
-}
-
 /**
  * Number e of the scratch, from a sorted run of `width` numbers of its list to its place in the run of twice that; with `is_last` into
  * the list itself, of which that is all.
@@ -122,7 +109,7 @@ SK_FUNCTION void sk_merge_runs(sk_u32 e, sk_u32 width, sk_u32 is_last, SK_GLOBAL
             other_start < piece.count ? sk_min_u32(piece.count - other_start, width) : 0u;
         const sk_u32 number = from[e];
         const sk_u32 place =
-            start + (at - own_start) + sk_count_smaller(from + (size_t)base + other_start, other_count, number);
+            start + (at - own_start) + sk_lower_bound(from + (size_t)base + other_start, other_count, number);
         if (is_last)
             references[piece.offset + place] = number;
         else
