@@ -99,8 +99,8 @@ class Sort final : public Primitive {
     }
     /// Sorting what is sorted already would be another, easier task.
     void prepare() override {
-        queue_.impl().copy(*source_keys_.memory(), *keys_.memory(), keys_.size_bytes());
-        queue_.impl().copy(*source_values_.memory(), *values_.memory(), values_.size_bytes());
+        queue_.impl().copy(*source_keys_.memory(), 0, *keys_.memory(), 0, keys_.size_bytes());
+        queue_.impl().copy(*source_values_.memory(), 0, *values_.memory(), 0, values_.size_bytes());
     }
     void run() override {
         queue_.impl().begin_stage("sort");

@@ -12,17 +12,17 @@ SK_KERNEL void shade_camera_rays(sk_u32 n, SkCamera camera, sk_u32 first_pixel, 
 SK_KERNEL void shade_surface(sk_u32 n, SkBackground background, float offset, SK_GLOBAL const SetkaRay* rays,
                              SK_GLOBAL const SetkaHit* hits, SK_GLOBAL const SetkaInstance* instances,
                              SK_GLOBAL const sk_u32* instance_starts, SK_GLOBAL const sk_u32* indices,
-                             SK_GLOBAL const float* normals, SK_GLOBAL const float* triangles,
-                             SK_GLOBAL const SkMaterial* materials, SK_GLOBAL SkSurfacePoint* points,
-                             SK_GLOBAL float* colours) {
+                             SK_GLOBAL const float* normals, SK_GLOBAL const float* vertex_colors,
+                             SK_GLOBAL const float* triangles, SK_GLOBAL const SkMaterial* materials,
+                             SK_GLOBAL SkSurfacePoint* points, SK_GLOBAL float* colours) {
     const sk_u32 i = sk_global_id();
     if (i < n) {
         const SetkaHit hit = hits[i];
         const sk_vec3 direction = sk_load3(rays[i].direction);
         SkSurfacePoint point = sk_no_surface();
         if (hit.instance != SETKA_NO_HIT)
-            point = sk_surface_point(direction, hit, instances, instance_starts, indices, normals, triangles,
-                                     offset);
+            point = sk_surface_point(direction, hit, instances, instance_starts, indices, normals, vertex_colors,
+                                     triangles, offset);
         points[i] = point;
         sk_store3(colours + (size_t)i * 3u, sk_own_colour(point, direction, background, materials));
     }

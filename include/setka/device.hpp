@@ -108,6 +108,9 @@ class Device {
     [[nodiscard]] std::uint64_t memory_in_use_bytes() const noexcept;
     [[nodiscard]] std::uint64_t peak_memory_bytes() const noexcept;
     void reset_peak_memory() const noexcept;
+    /// How often memory was asked of the driver so far. Buffers are made of what earlier ones gave back where that fits, so that work
+    /// that is done again and again, such as frames, soon asks for no more.
+    [[nodiscard]] std::uint64_t driver_allocations() const noexcept;
     /// Gives cached, unused allocations back to the driver.
     void trim() const;
 
@@ -162,7 +165,7 @@ class Queue {
     template <typename T>
     [[nodiscard]] Buffer<std::remove_const_t<T>> upload(std::span<T> source, std::string_view name) {
         auto buffer = make_buffer<std::remove_const_t<T>>(source.size(), name);
-        write(buffer.memory(), source.data(), source.size_bytes());
+        write(buffer.memory(), 0, source.data(), source.size_bytes());
         return buffer;
     }
 
@@ -175,17 +178,28 @@ class Queue {
                 storage.size()};
     }
 
-    /// Copies `source` over the first elements of `target`. Throws InvalidArgument if it does not fit.
+    /// Copies `source` over the elements of `target` from number `first` on. Throws InvalidArgument if it does not fit.
     template <typename T>
-    void upload(std::span<const T> source, const Buffer<T>& target) {
-        check_fits(source.size(), target.size());
-        write(target.memory(), source.data(), source.size_bytes());
+    void upload(std::span<const T> source, const Buffer<T>& target, std::size_t first = 0) {
+        check_fits(first, source.size(), target.size());
+        write(target.memory(), first * sizeof(T), source.data(), source.size_bytes());
+    }
+
+    /// Copies `count` elements of `source`, from `source_first` on, over those of `target` from `target_first` on, on the device.
+    /// Throws InvalidArgument if they are not there or do not fit. Within one buffer the two parts must not overlap.
+    template <typename T>
+    void copy(const Buffer<T>& source, std::size_t source_first, const Buffer<T>& target, std::size_t target_first,
+              std::size_t count) {
+        check_fits(source_first, count, source.size());
+        check_fits(target_first, count, target.size());
+        copy_bytes(source.memory(), source_first * sizeof(T), target.memory(), target_first * sizeof(T),
+                   count * sizeof(T));
     }
 
     /// Waits and copies the first elements of `source`; a copy of a buffer onto the memory that it wraps costs nothing.
     template <typename T>
     void download(const Buffer<T>& source, std::span<T> target) {
-        check_fits(target.size(), source.size());
+        check_fits(0, target.size(), source.size());
         read(source.memory(), target.data(), target.size_bytes());
     }
     template <typename T>
@@ -221,9 +235,11 @@ class Queue {
                                                             std::string_view name);
     [[nodiscard]] std::shared_ptr<backend::Memory> wrap_host(void* data, std::size_t size, std::size_t element_bytes,
                                                              bool read_only, std::string_view name);
-    void write(const std::shared_ptr<backend::Memory>& target, const void* source, std::size_t size_bytes);
+    void write(const std::shared_ptr<backend::Memory>& target, std::size_t at, const void* source, std::size_t size_bytes);
     void read(const std::shared_ptr<backend::Memory>& source, void* target, std::size_t size_bytes);
-    static void check_fits(std::size_t count, std::size_t capacity);
+    void copy_bytes(const std::shared_ptr<backend::Memory>& source, std::size_t source_at,
+                    const std::shared_ptr<backend::Memory>& target, std::size_t target_at, std::size_t size_bytes);
+    static void check_fits(std::size_t first, std::size_t count, std::size_t capacity);
 
     Device device_;
     std::shared_ptr<backend::Queue> impl_;

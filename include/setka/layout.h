@@ -73,6 +73,7 @@ typedef struct SetkaInstance {
 } SetkaInstance;
 
 #define SETKA_INSTANCE_HAS_NORMALS 1u
+#define SETKA_INSTANCE_HAS_COLORS 2u
 
 /** The mask bit that a device scene sets on instances of opaque materials, and on no other; queries may use it. */
 #define SETKA_MASK_OPAQUE 0x80000000u

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "setka/device.hpp"
 #include "setka/layout.h"
 
 namespace setka {
@@ -56,6 +55,7 @@ struct Mesh {
     std::vector<Float3> positions;
     std::vector<Triangle> triangles;
     std::vector<Float3> normals;  ///< one per position for smooth shading, or empty for flat shading
+    std::vector<Float3> colors;   ///< one per position, linear RGB, by which the material's diffuse colour is multiplied; or empty
 };
 
 /// A mesh placed in the world with a material.
@@ -125,45 +125,5 @@ void append(Scene& target, Scene source);
 [[nodiscard]] Camera frame_inside(const Bounds& bounds, float vertical_fov_degrees = 65);
 /// Lights for a scene without any: a key light over the camera's shoulder and a weak fill light at the eye.
 void add_default_lights(Scene& scene, const Camera& camera);
-
-/// A scene on a device: vertex, index, normal, instance and material tables. The host scene is not needed any more.
-class DeviceScene {
-  public:
-    /// Validates and uploads. Throws what Scene::validate throws; InvalidArgument above 2^28 triangles, in all instances or in
-    /// all meshes, 2^28 instances or 2^30 vertices; OutOfMemory.
-    DeviceScene(Queue& queue, const Scene& scene);
-
-    [[nodiscard]] std::uint32_t triangle_count() const noexcept { return triangle_count_; }
-    [[nodiscard]] std::uint32_t instance_count() const noexcept { return instance_count_; }
-    [[nodiscard]] std::uint64_t size_bytes() const noexcept;
-    /// Bits that the masks of all instances share: a query with one of them need not look at instances.
-    [[nodiscard]] std::uint32_t common_mask() const noexcept { return common_mask_; }
-
-    [[nodiscard]] const Buffer<float>& positions() const noexcept { return positions_; }        ///< 3 a vertex
-    [[nodiscard]] const Buffer<std::uint32_t>& indices() const noexcept { return indices_; }    ///< 3 a triangle of a mesh
-    [[nodiscard]] const Buffer<float>& normals() const noexcept { return normals_; }            ///< 3 a vertex, or 3 in all
-    [[nodiscard]] const Buffer<::SetkaInstance>& instances() const noexcept { return instances_; }
-    /// instance_count + 1 numbers: the first scene triangle of each instance, then the total.
-    [[nodiscard]] const Buffer<std::uint32_t>& instance_starts() const noexcept { return instance_starts_; }
-    /// Host copies for error messages and shading.
-    [[nodiscard]] const std::vector<Material>& materials() const noexcept { return materials_; }
-    [[nodiscard]] const std::vector<PointLight>& point_lights() const noexcept { return point_lights_; }
-    [[nodiscard]] const std::vector<DirectionalLight>& directional_lights() const noexcept { return directional_lights_; }
-    [[nodiscard]] const Background& background() const noexcept { return background_; }
-
-  private:
-    std::uint32_t triangle_count_ = 0;
-    std::uint32_t instance_count_ = 0;
-    std::uint32_t common_mask_ = 0;
-    Buffer<float> positions_;
-    Buffer<std::uint32_t> indices_;
-    Buffer<float> normals_;
-    Buffer<::SetkaInstance> instances_;
-    Buffer<std::uint32_t> instance_starts_;
-    std::vector<Material> materials_;
-    std::vector<PointLight> point_lights_;
-    std::vector<DirectionalLight> directional_lights_;
-    Background background_;
-};
 
 }  // namespace setka

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "setka/device.hpp"
+#include "setka/device_scene.hpp"
 #include "setka/error.hpp"
 #include "setka/file_format.h"
 #include "setka/grid.hpp"

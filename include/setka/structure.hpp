@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "setka/device.hpp"
+#include "setka/device_scene.hpp"
 #include "setka/scene.hpp"
 
 namespace setka {

@@ -35,6 +35,7 @@ float float_of_ordered(std::uint32_t ordered) noexcept {
 }  // namespace
 
 WorldGeometry transform_scene(Queue& queue, const DeviceScene& scene) {
+    scene.check_committed();
     WorldGeometry geometry;
     geometry.triangle_count = scene.triangle_count();
     geometry.instance_count = scene.instance_count();

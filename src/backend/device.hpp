@@ -51,9 +51,11 @@ class Queue {
                                                             std::string_view name) = 0;
     virtual void launch(Kernel kernel, std::uint32_t group_count, std::uint32_t group_size,
                         const Arguments& arguments) = 0;
-    virtual void write(Memory& target, const void* source, std::uint64_t size_bytes) = 0;
+    /// Copies `source`, which may be changed when the call returns, to `target` from byte `at` on.
+    virtual void write(Memory& target, std::uint64_t at, const void* source, std::uint64_t size_bytes) = 0;
     virtual void read(Memory& source, void* target, std::uint64_t size_bytes) = 0;
-    virtual void copy(Memory& source, Memory& target, std::uint64_t size_bytes) = 0;
+    virtual void copy(Memory& source, std::uint64_t source_at, Memory& target, std::uint64_t target_at,
+                      std::uint64_t size_bytes) = 0;
     virtual void fill(Memory& target, std::uint32_t pattern, std::uint64_t size_bytes) = 0;
     virtual void finish() = 0;
     /// Launches from here on count towards this stage of the timing table.
@@ -111,6 +113,8 @@ class Device : public std::enable_shared_from_this<Device> {
     void release(std::uint64_t size_bytes) noexcept { in_use_bytes_ -= size_bytes; }
     [[nodiscard]] std::uint64_t in_use_bytes() const noexcept { return in_use_bytes_; }
     [[nodiscard]] std::uint64_t peak_bytes() const noexcept { return peak_bytes_; }
+    void count_driver_allocation() noexcept { ++driver_allocations_; }
+    [[nodiscard]] std::uint64_t driver_allocations() const noexcept { return driver_allocations_; }
     void reset_peak() noexcept { peak_bytes_ = in_use_bytes_.load(); }
 
   private:
@@ -118,6 +122,7 @@ class Device : public std::enable_shared_from_this<Device> {
     bool is_probed_ = false;
     std::atomic<std::uint64_t> in_use_bytes_{0};
     std::atomic<std::uint64_t> peak_bytes_{0};
+    std::atomic<std::uint64_t> driver_allocations_{0};
 };
 
 }  // namespace setka::backend

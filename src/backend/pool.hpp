@@ -29,15 +29,23 @@ class Pool {
         return (size_bytes + step - 1) / step * step;
     }
 
-    [[nodiscard]] std::optional<Handle> take(std::uint64_t size_bytes) {
+    /// An allocation and how large it is.
+    struct Pooled {
+        Handle handle;
+        std::uint64_t size_bytes;
+    };
+
+    /// The smallest that is at least as large, unless it is larger by more than a quarter: tables of moving scenes have another size
+    /// in each frame, and need no memory of their own for each.
+    [[nodiscard]] std::optional<Pooled> take(std::uint64_t size_bytes) {
         if (!settings().pooling) return std::nullopt;  // what was given back stays apart, as a checker's quarantine
         const std::scoped_lock lock(mutex_);
-        const auto it = free_.find(size_bytes);
-        if (it == free_.end()) return std::nullopt;
-        std::optional<Handle> handle(std::move(it->second));
+        const auto it = free_.lower_bound(size_bytes);
+        if (it == free_.end() || it->first - size_bytes > size_bytes / 4) return std::nullopt;
+        std::optional<Pooled> pooled(Pooled{std::move(it->second), it->first});
+        cached_bytes_ -= it->first;
         free_.erase(it);
-        cached_bytes_ -= size_bytes;
-        return handle;
+        return pooled;
     }
 
     void give(std::uint64_t size_bytes, Handle handle) noexcept {

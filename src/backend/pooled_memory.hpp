@@ -36,7 +36,8 @@ class PooledMemory : public Memory {
     void fill_from(std::shared_ptr<Device> device, std::shared_ptr<Pool<Handle>> pool,
                    std::uint64_t pooled_bytes, MakeHandle make_handle) {
         if (auto pooled = pool->take(pooled_bytes)) {
-            buffer = std::move(*pooled);
+            buffer = std::move(pooled->handle);
+            pooled_bytes = pooled->size_bytes;
         } else {
             // Unused allocations of other sizes must not push the total over the budget.
             if (device->in_use_bytes() + pool->cached_bytes() > device->options().memory_budget_bytes)
@@ -53,6 +54,7 @@ class PooledMemory : public Memory {
     /// hold the device's memory.
     template <typename MakeHandle>
     static Handle make_or_trim(Device& device, std::uint64_t pooled_bytes, MakeHandle make_handle) {
+        device.count_driver_allocation();
         try {
             return make_handle(pooled_bytes);
         } catch (const Error& error) {

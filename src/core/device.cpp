@@ -102,6 +102,7 @@ Queue Device::make_queue() const { return Queue(*this, impl_->make_queue()); }
 std::uint64_t Device::memory_in_use_bytes() const noexcept { return impl_->in_use_bytes(); }
 std::uint64_t Device::peak_memory_bytes() const noexcept { return impl_->peak_bytes(); }
 void Device::reset_peak_memory() const noexcept { impl_->reset_peak(); }
+std::uint64_t Device::driver_allocations() const noexcept { return impl_->driver_allocations(); }
 void Device::trim() const { impl_->trim(); }
 
 namespace {
@@ -152,14 +153,15 @@ std::shared_ptr<backend::Memory> Queue::wrap_host(void* data, std::size_t size, 
     impl_->check_stop("wrapping '" + std::string(name) + "'");
     if (auto memory = impl_->wrap_host(data, size * element_bytes, read_only, name)) return memory;
     auto memory = allocate(size, element_bytes, name);
-    impl_->write(*memory, data, size * element_bytes);
+    impl_->write(*memory, 0, data, size * element_bytes);
     return memory;
 }
 
-void Queue::write(const std::shared_ptr<backend::Memory>& target, const void* source, std::size_t size_bytes) {
+void Queue::write(const std::shared_ptr<backend::Memory>& target, std::size_t at, const void* source,
+                  std::size_t size_bytes) {
     if (size_bytes == 0) return;
     impl_->check_stop("writing '" + target->name() + "'");
-    impl_->write(*target, source, size_bytes);
+    impl_->write(*target, at, source, size_bytes);
 }
 
 void Queue::read(const std::shared_ptr<backend::Memory>& source, void* target, std::size_t size_bytes) {
@@ -168,10 +170,19 @@ void Queue::read(const std::shared_ptr<backend::Memory>& source, void* target, s
     impl_->read(*source, target, size_bytes);
 }
 
-void Queue::check_fits(std::size_t count, std::size_t capacity) {
-    if (count > capacity)
-        throw Error(ErrorCategory::InvalidArgument, "a transfer of " + std::to_string(count) +
-                                                        " elements does not fit a buffer of " + std::to_string(capacity));
+void Queue::copy_bytes(const std::shared_ptr<backend::Memory>& source, std::size_t source_at,
+                       const std::shared_ptr<backend::Memory>& target, std::size_t target_at, std::size_t size_bytes) {
+    if (size_bytes == 0) return;
+    impl_->check_stop("copying '" + source->name() + "'");
+    impl_->copy(*source, source_at, *target, target_at, size_bytes);
+}
+
+void Queue::check_fits(std::size_t first, std::size_t count, std::size_t capacity) {
+    if (first <= capacity && count <= capacity - first) return;
+    throw Error(ErrorCategory::InvalidArgument,
+                "a transfer of " + std::to_string(count) + " elements" +
+                    (first == 0 ? "" : " from element " + std::to_string(first) + " on") +
+                    " does not fit a buffer of " + std::to_string(capacity));
 }
 
 void Queue::set_stop_token(std::stop_token token) { impl_->set_stop_token(std::move(token)); }

@@ -1,103 +1,291 @@
 // SPDX-License-Identifier: MIT
-/// How does a scene get onto a device? Concatenated tables, with instances that say where their mesh lies in them.
-#include <algorithm>
+/// What does an edit change on the device, and when? Vertices at once, the table of instances when all edits of a moment are known.
+#include "setka/device_scene.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "scene/checks.hpp"
+#include "scene/device_scene_state.hpp"
 #include "scene/limits.hpp"
-#include "setka/scene.hpp"
+#include "setka/error.hpp"
 
 namespace setka {
 
 namespace {
 
-SceneSize size_of(const Scene& scene) {
-    SceneSize size;
-    for (const Mesh& mesh : scene.meshes) {
-        size.vertices += mesh.positions.size();
-        size.mesh_triangles += mesh.triangles.size();
-    }
-    size.triangles = scene.triangle_count();
-    size.instances = scene.instances.size();
-    return size;
+template <typename... Ts>
+[[noreturn]] void refuse(const Ts&... parts) {
+    std::string message;
+    ((message += parts), ...);
+    throw Error(ErrorCategory::InvalidArgument, message);
 }
 
-/// Meshes one behind the other.
-struct HostTables {
-    std::vector<float> positions, normals;
-    std::vector<std::uint32_t> indices;
-    std::vector<::SetkaInstance> instances;
-    std::vector<std::uint32_t> starts;
-};
+std::string number(std::uint64_t value) { return std::to_string(value); }
 
-void add(std::vector<float>& table, const std::vector<Float3>& values) {
-    for (const Float3& v : values) table.insert(table.end(), {v.x, v.y, v.z});
+/// The lowest number that is free.
+template <typename Entry>
+std::uint32_t free_number(const std::vector<Entry>& entries, std::uint32_t free_entries) {
+    if (free_entries == 0) return static_cast<std::uint32_t>(entries.size());
+    const auto it = std::ranges::find_if(entries, [](const Entry& entry) { return !entry.is_live; });
+    return static_cast<std::uint32_t>(it - entries.begin());
 }
 
-HostTables tables_of(const Scene& scene, const SceneSize& size) {
-    HostTables tables;
-    struct Place {
-        std::uint32_t first_index, first_vertex;
-    };
-    std::vector<Place> places;
-    const bool any_normals = std::ranges::any_of(scene.meshes, [](const Mesh& m) { return !m.normals.empty(); });
-    tables.positions.reserve(3 * size.vertices);
-    tables.indices.reserve(3 * size.mesh_triangles);
-    for (const Mesh& mesh : scene.meshes) {
-        places.push_back({static_cast<std::uint32_t>(tables.indices.size() / 3),
-                          static_cast<std::uint32_t>(tables.positions.size() / 3)});
-        add(tables.positions, mesh.positions);
-        for (const Triangle& t : mesh.triangles) tables.indices.insert(tables.indices.end(), {t.a, t.b, t.c});
-        // Meshes without normals get zeros, so that one vertex index serves both tables.
-        if (any_normals) {
-            add(tables.normals, mesh.normals);
-            tables.normals.resize(tables.positions.size(), 0.0f);
-        }
-    }
-    std::uint32_t first_triangle = 0;
-    for (const Instance& instance : scene.instances) {
-        const Mesh& mesh = scene.meshes[instance.mesh];
-        ::SetkaInstance record{};
-        std::ranges::copy(instance.transform.rows, record.matrix);
-        record.first_triangle = first_triangle;
-        record.first_index = places[instance.mesh].first_index;
-        record.first_vertex = places[instance.mesh].first_vertex;
-        record.material = instance.material;
-        record.mask = instance.mask & ~SETKA_MASK_OPAQUE;
-        // An instance that the user's masks hide stays hidden from every query.
-        if (record.mask != 0 && !(scene.materials[instance.material].transparency > 0)) record.mask |= SETKA_MASK_OPAQUE;
-        record.flags = mesh.normals.empty() ? 0 : SETKA_INSTANCE_HAS_NORMALS;
-        tables.starts.push_back(first_triangle);
-        tables.instances.push_back(record);
-        first_triangle += static_cast<std::uint32_t>(mesh.triangles.size());
-    }
-    tables.starts.push_back(first_triangle);
-    return tables;
+void check_transform(const Matrix34& transform, std::uint32_t instance) {
+    const auto bad = std::ranges::find_if_not(transform.rows, [](float v) { return std::isfinite(v); });
+    if (bad != transform.rows.end())
+        refuse("instance ", number(instance), ": element ", number(std::uint64_t(bad - transform.rows.begin())),
+               " of its transform is ", std::to_string(*bad), "; finite numbers are accepted");
+}
+
+void check_instance(const std::vector<MeshEntry>& meshes, const std::vector<Material>& materials,
+                    const Instance& instance, std::uint32_t index) {
+    const std::string owner = "instance " + number(index) + ": ";
+    if (instance.mesh >= meshes.size() || !meshes[instance.mesh].is_live)
+        refuse(owner, absence("mesh", instance.mesh, meshes.size()));
+    if (instance.material >= materials.size())
+        refuse(owner, absence("material", instance.material, materials.size()));
+    check_transform(instance.transform, index);
+}
+
+/// Throws if the scene would be too large with `mesh` in place of one that takes `old`, and that so many instances have.
+void check_room(const MeshTables& tables, const Mesh& mesh, const MeshPlace& old, std::uint32_t users) {
+    check_scene_size({.vertices = tables.vertices() - old.vertices.size + mesh.positions.size(),
+                      .mesh_triangles = tables.triangles() - old.triangles.size + mesh.triangles.size(),
+                      .triangles = std::uint64_t(users) * mesh.triangles.size(),
+                      .instances = 0});
 }
 
 }  // namespace
 
-DeviceScene::DeviceScene(Queue& queue, const Scene& scene) {
+DeviceScene::DeviceScene() : state_(std::make_unique<State>()) {}
+DeviceScene::~DeviceScene() = default;
+DeviceScene::DeviceScene(DeviceScene&&) noexcept = default;
+DeviceScene& DeviceScene::operator=(DeviceScene&&) noexcept = default;
+
+DeviceScene::DeviceScene(Queue& queue, const Scene& scene) : DeviceScene() {
     scene.validate();
-    const SceneSize size = size_of(scene);
+    SceneSize size{.vertices = 0, .mesh_triangles = 0, .triangles = scene.triangle_count(),
+                   .instances = scene.instances.size()};
+    for (const Mesh& mesh : scene.meshes) {
+        size.vertices += mesh.positions.size();
+        size.mesh_triangles += mesh.triangles.size();
+    }
     check_scene_size(size);
-    const HostTables tables = tables_of(scene, size);
-    triangle_count_ = tables.starts.back();
-    instance_count_ = static_cast<std::uint32_t>(scene.instances.size());
-    common_mask_ = ~0u;
-    for (const ::SetkaInstance& instance : tables.instances) common_mask_ &= instance.mask;
-    positions_ = queue.upload(std::span(tables.positions), "positions");
-    indices_ = queue.upload(std::span(tables.indices), "indices");
-    normals_ = queue.upload(std::span(tables.normals), "normals");
-    instances_ = queue.upload(std::span(tables.instances), "instances");
-    instance_starts_ = queue.upload(std::span(tables.starts), "instance starts");
-    materials_ = scene.materials;
-    point_lights_ = scene.point_lights;
-    directional_lights_ = scene.directional_lights;
-    background_ = scene.background;
+    State& state = *state_;
+    state.tables.reserve(queue, size.vertices, size.mesh_triangles);
+    for (const Mesh& mesh : scene.meshes) state.meshes.push_back({state.tables.place(queue, mesh), 0, true});
+    for (const Instance& instance : scene.instances) {
+        state.entries.push_back({instance, true, false});
+        ++state.meshes[instance.mesh].users;
+    }
+    state.materials = scene.materials;
+    state.point_lights = scene.point_lights;
+    state.directional_lights = scene.directional_lights;
+    state.background = scene.background;
+    state.layout_changed = true;
+    commit(queue);
 }
 
-std::uint64_t DeviceScene::size_bytes() const noexcept {
-    return positions_.size_bytes() + indices_.size_bytes() + normals_.size_bytes() + instances_.size_bytes() +
-           instance_starts_.size_bytes();
+std::uint32_t DeviceScene::add_mesh(Queue& queue, const Mesh& mesh) {
+    State& state = *state_;
+    const auto index = free_number(state.meshes, state.free_meshes);
+    check(mesh, index);
+    check_room(state.tables, mesh, MeshPlace{}, 0);
+    if (index == state.meshes.size()) state.meshes.reserve(index + std::size_t(1));
+    const MeshEntry entry{state.tables.place(queue, mesh), 0, true};
+    if (index == state.meshes.size()) {
+        state.meshes.push_back(entry);
+    } else {
+        state.meshes[index] = entry;
+        --state.free_meshes;
+    }
+    return index;
 }
+
+void DeviceScene::replace_mesh(Queue& queue, std::uint32_t mesh, const Mesh& with) {
+    State& state = *state_;
+    MeshEntry& entry = state.mesh(mesh);
+    check(with, mesh);
+    check_room(state.tables, with, entry.place, entry.users);
+    const MeshPlace place = state.tables.place(queue, with);
+    state.tables.remove(entry.place);
+    entry.place = place;
+    if (entry.users > 0) state.layout_changed = true;
+}
+
+namespace {
+
+void check_count(const char* what, std::size_t count, std::uint32_t mesh, std::uint64_t vertices) {
+    if (count != vertices)
+        refuse(what, " are ", number(count), " vertices; mesh ", number(mesh), " has ", number(vertices));
+}
+
+/// Throws unless so many positions and normals can be those of the mesh.
+void check_vertices(const MeshPlace& place, std::uint32_t mesh, std::size_t positions, std::size_t normals) {
+    check_count("positions", positions, mesh, place.vertices.size);
+    if (normals == 0) return;
+    if (!place.has_normals)
+        refuse("normals are given, but mesh ", number(mesh), " has none; replace_mesh() can give it some");
+    check_count("normals", normals, mesh, place.vertices.size);
+}
+
+/// Vertices in a buffer of 3 floats each.
+std::size_t vertices_in(const char* what, const Buffer<float>& buffer) {
+    if (buffer.size() % 3 != 0)
+        refuse(what, " has ", number(buffer.size()), " floats; a multiple of 3 is accepted");
+    return buffer.size() / 3;
+}
+
+}  // namespace
+
+void DeviceScene::set_vertices(Queue& queue, std::uint32_t mesh, std::span<const Float3> positions,
+                               std::span<const Float3> normals) {
+    const MeshPlace& place = state_->mesh(mesh).place;
+    check_vertices(place, mesh, positions.size(), normals.size());
+    const std::string owner = "mesh " + number(mesh);
+    check_finite(owner, "position", positions);
+    check_finite(owner, "normal", normals);
+    state_->tables.write_positions(queue, place, positions);
+    state_->tables.write_normals(queue, place, normals);
+}
+
+void DeviceScene::set_vertices(Queue& queue, std::uint32_t mesh, const Buffer<float>& positions,
+                               const Buffer<float>& normals) {
+    const MeshPlace& place = state_->mesh(mesh).place;
+    check_vertices(place, mesh, vertices_in("positions", positions), vertices_in("normals", normals));
+    const std::size_t first = 3 * place.vertices.first;
+    queue.copy(positions, 0, state_->tables.positions(), first, positions.size());
+    queue.copy(normals, 0, state_->tables.normals(), first, normals.size());
+}
+
+void DeviceScene::remove_mesh(std::uint32_t mesh) {
+    State& state = *state_;
+    MeshEntry& entry = state.mesh(mesh);
+    if (entry.users > 0) {
+        const auto user = std::ranges::find_if(state.entries, [&](const InstanceEntry& e) {
+            return e.is_live && e.instance.mesh == mesh;
+        });
+        refuse("mesh ", number(mesh), " cannot be removed: it is that of ", number(entry.users), " instances, such as ",
+               number(std::uint64_t(user - state.entries.begin())), "; remove these first");
+    }
+    state.tables.remove(entry.place);
+    entry = {};
+    ++state.free_meshes;
+}
+
+std::uint32_t DeviceScene::add_instance(const Instance& instance) {
+    State& state = *state_;
+    const auto index = free_number(state.entries, state.free_entries);
+    check_instance(state.meshes, state.materials, instance, index);
+    if (index == state.entries.size()) {
+        state.entries.push_back({instance, true, false});
+    } else {
+        state.entries[index] = {instance, true, state.entries[index].is_edited};
+        --state.free_entries;
+    }
+    ++state.meshes[instance.mesh].users;
+    state.layout_changed = true;
+    return index;
+}
+
+void DeviceScene::set_instance(std::uint32_t number, const Instance& instance) {
+    State& state = *state_;
+    InstanceEntry& entry = state.entry(number);
+    check_instance(state.meshes, state.materials, instance, number);
+    if (instance.mesh != entry.instance.mesh) {
+        --state.meshes[entry.instance.mesh].users;
+        ++state.meshes[instance.mesh].users;
+        state.layout_changed = true;
+    }
+    state.edit(number);
+    entry.instance = instance;
+}
+
+void DeviceScene::set_transform(std::uint32_t number, const Matrix34& transform) {
+    InstanceEntry& entry = state_->entry(number);
+    check_transform(transform, number);
+    state_->edit(number);
+    entry.instance.transform = transform;
+}
+
+void DeviceScene::remove_instance(std::uint32_t number) {
+    State& state = *state_;
+    InstanceEntry& entry = state.entry(number);
+    --state.meshes[entry.instance.mesh].users;
+    entry.is_live = false;
+    ++state.free_entries;
+    // Places after the last instance are no more.
+    while (!state.entries.empty() && !state.entries.back().is_live) {
+        state.entries.pop_back();
+        --state.free_entries;
+    }
+    std::erase_if(state.edited, [&](std::uint32_t index) { return index >= state.entries.size(); });
+    state.layout_changed = true;
+}
+
+std::uint32_t DeviceScene::add_material(const Material& material) {
+    const auto index = static_cast<std::uint32_t>(state_->materials.size());
+    check(material, index);
+    state_->materials.push_back(material);
+    return index;
+}
+
+void DeviceScene::set_material(std::uint32_t number, const Material& material) {
+    State& state = *state_;
+    if (number >= state.materials.size())
+        refuse(absence("material", number, state.materials.size()));
+    check(material, number);
+    const bool changes_masks = is_opaque(material) != is_opaque(state.materials[number]);
+    state.materials[number] = material;
+    if (!changes_masks) return;
+    for (std::uint32_t index = 0; index < state.entries.size(); ++index)
+        if (state.entries[index].is_live && state.entries[index].instance.material == number) state.edit(index);
+}
+
+void DeviceScene::set_lights(std::vector<PointLight> point_lights, std::vector<DirectionalLight> directional_lights) {
+    for (std::size_t i = 0; i < point_lights.size(); ++i) check(point_lights[i], i);
+    for (std::size_t i = 0; i < directional_lights.size(); ++i) check(directional_lights[i], i);
+    state_->point_lights = std::move(point_lights);
+    state_->directional_lights = std::move(directional_lights);
+}
+
+void DeviceScene::set_background(const Background& background) {
+    check(background);
+    state_->background = background;
+}
+
+void DeviceScene::commit(Queue& queue) {
+    if (!state_->is_committed()) state_->commit(queue);
+}
+
+bool DeviceScene::is_committed() const noexcept { return state_->is_committed(); }
+
+void DeviceScene::check_committed() const {
+    if (!is_committed() || state_->starts.empty())
+        refuse("scene has edits that are not on the device; commit() has to come first");
+}
+
+std::uint32_t DeviceScene::triangle_count() const noexcept { return state_->starts.empty() ? 0 : state_->starts.back(); }
+std::uint32_t DeviceScene::instance_count() const noexcept {
+    return static_cast<std::uint32_t>(state_->records.size());
+}
+std::uint64_t DeviceScene::size_bytes() const noexcept {
+    return state_->tables.size_bytes() + state_->instances.size_bytes() + state_->instance_starts.size_bytes();
+}
+std::uint32_t DeviceScene::common_mask() const noexcept { return state_->common_mask; }
+const Buffer<float>& DeviceScene::positions() const noexcept { return state_->tables.positions(); }
+const Buffer<std::uint32_t>& DeviceScene::indices() const noexcept { return state_->tables.indices(); }
+const Buffer<float>& DeviceScene::normals() const noexcept { return state_->tables.normals(); }
+const Buffer<float>& DeviceScene::colors() const noexcept { return state_->tables.colors(); }
+const Buffer<::SetkaInstance>& DeviceScene::instances() const noexcept { return state_->instances; }
+const Buffer<std::uint32_t>& DeviceScene::instance_starts() const noexcept { return state_->instance_starts; }
+const std::vector<Material>& DeviceScene::materials() const noexcept { return state_->materials; }
+const std::vector<PointLight>& DeviceScene::point_lights() const noexcept { return state_->point_lights; }
+const std::vector<DirectionalLight>& DeviceScene::directional_lights() const noexcept {
+    return state_->directional_lights;
+}
+const Background& DeviceScene::background() const noexcept { return state_->background; }
 
 }  // namespace setka

@@ -200,6 +200,7 @@ Renderer::Renderer(const RenderOptions& options) : options_(options) {
 Image Renderer::render(Queue& queue, const DeviceScene& scene, const Structure& structure,
                        const Camera& camera) {
     const auto start = std::chrono::steady_clock::now();
+    scene.check_committed();
     const WorldGeometry& geometry = structure.geometry();
     if (geometry.triangle_count != scene.triangle_count() ||
         geometry.instance_count != scene.instance_count())

@@ -15,7 +15,7 @@ static_assert(sizeof(SkCamera) == 64);
 static_assert(sizeof(SkMaterial) == 64);
 static_assert(sizeof(SkLight) == 32);
 static_assert(sizeof(SkBackground) == 40);
-static_assert(sizeof(SkSurfacePoint) == 64);
+static_assert(sizeof(SkSurfacePoint) == 76);
 
 namespace {
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "device/shade/layout.h"
+#include "setka/device_scene.hpp"
 #include "setka/scene.hpp"
 
 namespace setka {

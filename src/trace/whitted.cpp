@@ -73,7 +73,7 @@ Buffer<SkSurfacePoint> WhittedPasses::surfaces(const Buffer<Ray>& rays, const Bu
     auto points = queue_.make_buffer<SkSurfacePoint>(rays.size(), "surface points");
     queue_.impl().begin_stage("shade surfaces");
     launch_items(queue_, Kernel::shade_surface, items(rays), background_, offset_, rays, hits,
-                 scene_.instances(), scene_.instance_starts(), scene_.indices(), scene_.normals(),
+                 scene_.instances(), scene_.instance_starts(), scene_.indices(), scene_.normals(), scene_.colors(),
                  structure_.geometry().triangles, materials_, points, colours);
     return points;
 }

@@ -20,6 +20,8 @@ const char* to_string(Step step) noexcept {
             return "write";
         case Step::Read:
             return "read";
+        case Step::Copy:
+            return "copy";
         case Step::Fill:
             return "fill";
     }
@@ -86,9 +88,10 @@ void FaultyQueue::launch(setka::Kernel kernel, std::uint32_t group_count, std::u
     real_->launch(kernel, group_count, group_size, arguments);
 }
 
-void FaultyQueue::write(Memory& target, const void* source, std::uint64_t size_bytes) {
+void FaultyQueue::write(Memory& target, std::uint64_t at, const void* source, std::uint64_t size_bytes) {
     fail_if_due(Step::Write, target.name());
-    real_->write(target, source, size_bytes);
+    real_->write(target, at, source, size_bytes);
+    written_bytes_ += size_bytes;
 }
 
 void FaultyQueue::read(Memory& source, void* target, std::uint64_t size_bytes) {
@@ -97,8 +100,10 @@ void FaultyQueue::read(Memory& source, void* target, std::uint64_t size_bytes) {
     is_idle_ = true;
 }
 
-void FaultyQueue::copy(Memory& source, Memory& target, std::uint64_t size_bytes) {
-    real_->copy(source, target, size_bytes);
+void FaultyQueue::copy(Memory& source, std::uint64_t source_at, Memory& target, std::uint64_t target_at,
+                       std::uint64_t size_bytes) {
+    fail_if_due(Step::Copy, source.name());
+    real_->copy(source, source_at, target, target_at, size_bytes);
 }
 
 void FaultyQueue::fill(Memory& target, std::uint32_t pattern, std::uint64_t size_bytes) {

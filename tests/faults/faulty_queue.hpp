@@ -14,9 +14,9 @@
 namespace faults {
 
 /// What a queue can be asked for that may fail.
-enum class Step { Allocate, Wrap, Launch, Write, Read, Fill };
+enum class Step { Allocate, Wrap, Launch, Write, Read, Copy, Fill };
 inline constexpr Step all_steps[] = {Step::Allocate, Step::Wrap, Step::Launch,
-                                     Step::Write,    Step::Read, Step::Fill};
+                                     Step::Write,    Step::Read, Step::Copy,   Step::Fill};
 
 [[nodiscard]] const char* to_string(Step step) noexcept;
 
@@ -43,6 +43,8 @@ class FaultyQueue final : public setka::backend::Queue {
     [[nodiscard]] const std::string& failed_name() const { return failed_name_; }
     /// Kernels that were launched since the last fail() or before().
     [[nodiscard]] std::uint32_t launches() const { return launches_; }
+    /// Bytes that went from the host to the device so far.
+    [[nodiscard]] std::uint64_t written_bytes() const { return written_bytes_; }
     /// Whether every kernel that was launched has been waited for.
     [[nodiscard]] bool is_idle() const { return is_idle_; }
 
@@ -53,10 +55,11 @@ class FaultyQueue final : public setka::backend::Queue {
                                                                     std::string_view name) override;
     void launch(setka::Kernel kernel, std::uint32_t group_count, std::uint32_t group_size,
                 const setka::Arguments& arguments) override;
-    void write(setka::backend::Memory& target, const void* source, std::uint64_t size_bytes) override;
+    void write(setka::backend::Memory& target, std::uint64_t at, const void* source,
+               std::uint64_t size_bytes) override;
     void read(setka::backend::Memory& source, void* target, std::uint64_t size_bytes) override;
-    void copy(setka::backend::Memory& source, setka::backend::Memory& target,
-              std::uint64_t size_bytes) override;
+    void copy(setka::backend::Memory& source, std::uint64_t source_at, setka::backend::Memory& target,
+              std::uint64_t target_at, std::uint64_t size_bytes) override;
     void fill(setka::backend::Memory& target, std::uint32_t pattern, std::uint64_t size_bytes) override;
     void finish() override;
     void begin_stage(std::string_view stage) override { real_->begin_stage(stage); }
@@ -92,6 +95,7 @@ class FaultyQueue final : public setka::backend::Queue {
     bool has_failed_ = false;
     bool is_idle_ = true;
     std::uint32_t launches_ = 0;
+    std::uint64_t written_bytes_ = 0;
     std::string failed_name_;
 };
 

@@ -88,6 +88,30 @@ Work finding_all(const std::string& name) {
             }};
 }
 
+/// Meshes and instances come, go and move, and a structure that was built before holds the old table.
+Work editing(const std::string& name) {
+    return {name, [](Queue& queue, const World& world) {
+                setka::DeviceScene scene(queue, world.scene);
+                const auto builder = setka::make_grid_builder({.density = 2});
+                const setka::Grid before = builder->build(queue, scene);
+                setka::Mesh mesh = world.scene.meshes.front();
+                mesh.colors.assign(mesh.positions.size(), setka::Float3{1, 0.5f, 0});
+                const std::uint32_t added = scene.add_mesh(queue, mesh);
+                (void)scene.add_instance({.mesh = added, .transform = {}});
+                scene.commit(queue);
+                scene.set_vertices(queue, 0, mesh.positions, mesh.normals);
+                scene.replace_mesh(queue, added, world.scene.meshes.back());
+                scene.set_transform(0, {{2, 0, 0, 1, 0, 2, 0, 0, 0, 0, 2, 0}});
+                scene.commit(queue);
+                return Bytes()
+                    .add(queue.download(scene.instances()))
+                    .add(queue.download(scene.instance_starts()))
+                    .add(queue.download(before.geometry().instances))
+                    .add(queue.download(builder->build(queue, scene).geometry().triangles))
+                    .get();
+            }};
+}
+
 Work tracing_from_host(const std::string& name) {
     return {name, [](Queue& queue, const World& world) {
                 const setka::Tracer tracer;
@@ -117,6 +141,7 @@ const std::vector<Work>& all_work() {
                  .add(queue.download(scene.instances()))
                  .get();
          }},
+        editing("edit"),
         {"plan",
          [](Queue& queue, const World& world) {
              const auto plan = setka::make_grid_builder()->plan(queue, world.on_device);

@@ -51,9 +51,12 @@ class HostMemory final : public Memory {
 
 void* data_of(const Memory& memory) { return static_cast<const HostMemory&>(memory).data(); }
 
-void check_size(const Memory& memory, std::uint64_t size_bytes) {
-    check(size_bytes <= memory.size_bytes(), "a transfer beyond the end of '" + memory.name() + "'");
+void check_size(const Memory& memory, std::uint64_t at, std::uint64_t size_bytes) {
+    check(at <= memory.size_bytes() && size_bytes <= memory.size_bytes() - at,
+          "a transfer beyond the end of '" + memory.name() + "'");
 }
+
+std::byte* bytes_of(const Memory& memory) { return static_cast<std::byte*>(data_of(memory)); }
 
 template <typename T>
 T value_of(const Argument& argument) {
@@ -105,20 +108,21 @@ class HostQueue final : public setka::backend::Queue {
         check(group_size == 1, "the host has groups of one work-item");
         run(kernel, group_count, arguments);
     }
-    void write(Memory& target, const void* source, std::uint64_t size_bytes) override {
-        check_size(target, size_bytes);
-        std::memcpy(data_of(target), source, size_bytes);
+    void write(Memory& target, std::uint64_t at, const void* source, std::uint64_t size_bytes) override {
+        check_size(target, at, size_bytes);
+        std::memcpy(bytes_of(target) + at, source, size_bytes);
     }
     void read(Memory& source, void* target, std::uint64_t size_bytes) override {
-        check_size(source, size_bytes);
+        check_size(source, 0, size_bytes);
         if (data_of(source) != target) std::memcpy(target, data_of(source), size_bytes);
     }
-    void copy(Memory& source, Memory& target, std::uint64_t size_bytes) override {
-        check_size(source, size_bytes);
-        write(target, data_of(source), size_bytes);
+    void copy(Memory& source, std::uint64_t source_at, Memory& target, std::uint64_t target_at,
+              std::uint64_t size_bytes) override {
+        check_size(source, source_at, size_bytes);
+        write(target, target_at, bytes_of(source) + source_at, size_bytes);
     }
     void fill(Memory& target, std::uint32_t pattern, std::uint64_t size_bytes) override {
-        check_size(target, size_bytes);
+        check_size(target, 0, size_bytes);
         auto* words = static_cast<std::uint32_t*>(data_of(target));
         std::fill_n(words, size_bytes / sizeof pattern, pattern);
     }

@@ -30,6 +30,30 @@ TEST_F(Render, DirectionalLightFollowsLambert) {
     EXPECT_EQ(picture.statistics.shadow_rays, 64u * 64);
 }
 
+TEST_F(Render, VertexColoursMultiplyTheDiffuseColour) {
+    Scene scene = floor_from_above(1);
+    scene.background = {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, 0.5f};  // ambient light as well
+    scene.directional_lights.push_back({{0, -1, 0}, {0.5f, 0.5f, 0.5f}});
+    scene.materials[0].diffuse = {0.8f, 0.4f, 0.6f};
+    const Float3 plain = render(scene).at(32, 32);
+    scene.meshes[0].colors.assign(4, {0.5f, 0.25f, 0});
+    const Float3 tinted = render(scene).at(32, 32);
+    EXPECT_NEAR(tinted.x, 0.5f * plain.x, 1e-6);
+    EXPECT_NEAR(tinted.y, 0.25f * plain.y, 1e-6);
+    EXPECT_EQ(tinted.z, 0);
+    scene.meshes[0].colors.assign(4, {1, 1, 1});
+    EXPECT_NEAR(render(scene).at(32, 32).x, plain.x, 1e-6);
+
+    for (std::size_t i = 0; i < 4; ++i)
+        scene.meshes[0].colors[i] = scene.meshes[0].positions[i].x < 0 ? Float3{1, 0, 0} : Float3{0, 1, 0};
+    const Picture blend = render(scene);  // of a floor that reaches from -2 to 2
+    for (const std::uint32_t x : {8u, 20u, 32u, 60u}) {
+        const float green = 0.5f + floor_coordinate(x, 1) / 4;
+        EXPECT_NEAR(blend.at(x, 32).x, plain.x * (1 - green), 1e-5) << x;
+        EXPECT_NEAR(blend.at(x, 32).y, plain.y * green, 1e-5) << x;
+    }
+}
+
 TEST_F(Render, PointLightFallsOffWithTheSquare) {
     Scene scene = floor_from_above(1);
     scene.point_lights.push_back({{0.25f, 0.5f, 0}, {1, 2, 3}, 2});

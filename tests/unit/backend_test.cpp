@@ -184,6 +184,18 @@ TEST(PooledMemory, ComesFromThePoolWhereThatHasTheSize) {
     EXPECT_EQ(allocator.device->peak_bytes(), 2001u);
 }
 
+TEST(PooledMemory, TakesTheSmallestThatIsLargeEnoughAndNotMuchLarger) {
+    Allocator allocator;
+    for (const std::uint64_t bytes : {3072, 2560, 2048}) allocator.allocate(bytes).reset();
+    EXPECT_EQ(allocator.made, 3);
+    const auto tight = allocator.allocate(2304);  // 2560 is larger by a ninth
+    EXPECT_EQ(allocator.made, 3);
+    EXPECT_EQ(allocator.pool->cached_bytes(), 3072u + 2048u);
+    const auto other = allocator.allocate(1536);  // 2048 is larger by a third
+    EXPECT_EQ(allocator.made, 4);
+    EXPECT_EQ(allocator.device->driver_allocations(), 4u);
+}
+
 TEST(PooledMemory, CountsNothingThatFailed) {
     Allocator allocator;
     const auto failing = [](std::uint64_t) -> Handle { throw std::bad_alloc(); };

@@ -83,10 +83,10 @@ void CudaQueue::launch(Kernel kernel, std::uint32_t group_count, std::uint32_t g
     if (settings().log_launch) log_line(what + ", " + std::to_string(group_count) + " x " + std::to_string(group_size));
 }
 
-void CudaQueue::write(Memory& target, const void* source, std::uint64_t size_bytes) {
+void CudaQueue::write(Memory& target, std::uint64_t at, const void* source, std::uint64_t size_bytes) {
     select();
     const auto* from = static_cast<const std::byte*>(source);
-    auto* to = pointer_as<std::byte>(target);
+    auto* to = pointer_as<std::byte>(target) + at;
     for (std::size_t done = 0, half = 0; done < size_bytes; half ^= 1) {
         const std::size_t part = std::min<std::size_t>(staging_bytes, size_bytes - done);
         std::byte* staging = staging_.get() + half * staging_bytes;
@@ -122,9 +122,11 @@ void CudaQueue::read(Memory& source, void* target, std::uint64_t size_bytes) {
     }
 }
 
-void CudaQueue::copy(Memory& source, Memory& target, std::uint64_t size_bytes) {
+void CudaQueue::copy(Memory& source, std::uint64_t source_at, Memory& target, std::uint64_t target_at,
+                     std::uint64_t size_bytes) {
     select();
-    check(cudaMemcpyAsync(pointer_of(target), pointer_of(source), size_bytes, cudaMemcpyDeviceToDevice, stream_.get()),
+    check(cudaMemcpyAsync(pointer_as<std::byte>(target) + target_at, pointer_as<std::byte>(source) + source_at, size_bytes,
+                          cudaMemcpyDeviceToDevice, stream_.get()),
           "copying '" + source.name() + "' to '" + target.name() + "'");
 }
 
@@ -137,7 +139,7 @@ void CudaQueue::fill(Memory& target, std::uint32_t pattern, std::uint64_t size_b
         return;
     }
     const std::vector<std::uint32_t> words(size_bytes / sizeof(pattern), pattern);
-    write(target, words.data(), size_bytes);
+    write(target, 0, words.data(), size_bytes);
 }
 
 void CudaQueue::finish() {

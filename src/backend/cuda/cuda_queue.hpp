@@ -31,9 +31,10 @@ class CudaQueue final : public Queue {
                                                     std::string_view name) override;
     void launch(Kernel kernel, std::uint32_t group_count, std::uint32_t group_size,
                 const Arguments& arguments) override;
-    void write(Memory& target, const void* source, std::uint64_t size_bytes) override;
+    void write(Memory& target, std::uint64_t at, const void* source, std::uint64_t size_bytes) override;
     void read(Memory& source, void* target, std::uint64_t size_bytes) override;
-    void copy(Memory& source, Memory& target, std::uint64_t size_bytes) override;
+    void copy(Memory& source, std::uint64_t source_at, Memory& target, std::uint64_t target_at,
+              std::uint64_t size_bytes) override;
     void fill(Memory& target, std::uint32_t pattern, std::uint64_t size_bytes) override;
     void finish() override;
     void begin_stage(std::string_view stage) override { clock_.begin_stage(stage); }

@@ -80,9 +80,9 @@ void OpenClQueue::launch(Kernel kernel, std::uint32_t group_count, std::uint32_t
     if (clock_.is_full()) collect_events();
 }
 
-void OpenClQueue::write(Memory& target, const void* source, std::uint64_t size_bytes) {
+void OpenClQueue::write(Memory& target, std::uint64_t at, const void* source, std::uint64_t size_bytes) {
     guarded("writing '" + target.name() + "'", [&] {
-        queue_.enqueueWriteBuffer(as_opencl(target).buffer, CL_TRUE, 0, size_bytes, source);
+        queue_.enqueueWriteBuffer(as_opencl(target).buffer, CL_TRUE, at, size_bytes, source);
     });
 }
 
@@ -99,9 +99,10 @@ void OpenClQueue::read(Memory& source, void* target, std::uint64_t size_bytes) {
     });
 }
 
-void OpenClQueue::copy(Memory& source, Memory& target, std::uint64_t size_bytes) {
+void OpenClQueue::copy(Memory& source, std::uint64_t source_at, Memory& target, std::uint64_t target_at,
+                       std::uint64_t size_bytes) {
     guarded("copying '" + source.name() + "' to '" + target.name() + "'", [&] {
-        queue_.enqueueCopyBuffer(as_opencl(source).buffer, as_opencl(target).buffer, 0, 0, size_bytes);
+        queue_.enqueueCopyBuffer(as_opencl(source).buffer, as_opencl(target).buffer, source_at, target_at, size_bytes);
     });
 }
 
@@ -109,7 +110,7 @@ void OpenClQueue::fill(Memory& target, std::uint32_t pattern, std::uint64_t size
     // A checker may follow one transfer but not a fill: Oclgrind 21.10 takes the latter's first word for all.
     if (!settings().pooling) {
         const std::vector<std::uint32_t> words(size_bytes / sizeof pattern, pattern);
-        return write(target, words.data(), size_bytes);
+        return write(target, 0, words.data(), size_bytes);
     }
     guarded("filling '" + target.name() + "'", [&] {
         queue_.enqueueFillBuffer(as_opencl(target).buffer, pattern, 0, size_bytes);

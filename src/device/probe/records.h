@@ -42,7 +42,7 @@
     SK_PROBE_THREE(F, zenith) SK_PROBE_THREE(F, horizon) SK_PROBE_THREE(F, ground) F(ambient)
 #define SK_MEMBERS_SURFACE(F, U)                                                                    \
     SK_PROBE_THREE(F, position) F(offset) SK_PROBE_THREE(F, normal) F(cosine)                       \
-    SK_PROBE_THREE(F, geometric) U(material) SK_PROBE_THREE(F, light_origin) U(inside)
+    SK_PROBE_THREE(F, geometric) U(material) SK_PROBE_THREE(F, light_origin) U(inside) SK_PROBE_THREE(F, tint)
 
 /* R(type, variable, members); the kernel takes them by value in this order. */
 #define SK_PROBE_RECORDS(R)                                                                         \

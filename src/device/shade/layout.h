@@ -52,7 +52,7 @@ typedef struct SkBackground {
     float ambient;
 } SkBackground;
 
-/** Where a ray met a surface, with all that shading needs of it. 64 bytes. */
+/** Where a ray met a surface, with all that shading needs of it. 76 bytes. */
 typedef struct SkSurfacePoint {
     float position[3];
     float offset;          /**< how far from the surface new rays start */
@@ -62,6 +62,7 @@ typedef struct SkSurfacePoint {
     setka_u32 material;    /**< SETKA_NO_HIT where the ray left the scene */
     float light_origin[3]; /**< where shadow rays start */
     setka_u32 inside;      /**< 1 if the ray came from inside a closed mesh, else 0 */
+    float tint[3];         /**< the vertices' colour, by which the diffuse one is multiplied; 1 where they have none */
 } SkSurfacePoint;
 
 #endif

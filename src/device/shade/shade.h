@@ -44,13 +44,13 @@ SK_FUNCTION sk_vec3 sk_mirror_share(SkMaterial material, float cosine) {
                     (material.specular[2] + (1.0f - material.specular[2]) * x5) * material.reflectivity);
 }
 
-/** The diffuse colour that is left beside what the surface mirrors and lets through. */
-SK_FUNCTION sk_vec3 sk_matte(SkMaterial material, float cosine) {
-    const sk_vec3 mirror = sk_mirror_share(material, cosine);
+/** The diffuse colour of a point that is left beside what the surface mirrors and lets through. */
+SK_FUNCTION sk_vec3 sk_matte(SkMaterial material, SkSurfacePoint point) {
+    const sk_vec3 mirror = sk_mirror_share(material, point.cosine);
     const float rest = 1.0f - material.transparency;
-    return sk_make3((material.diffuse[0] * rest) * (1.0f - mirror.x),
-                    (material.diffuse[1] * rest) * (1.0f - mirror.y),
-                    (material.diffuse[2] * rest) * (1.0f - mirror.z));
+    return sk_make3(((material.diffuse[0] * point.tint[0]) * rest) * (1.0f - mirror.x),
+                    ((material.diffuse[1] * point.tint[1]) * rest) * (1.0f - mirror.y),
+                    ((material.diffuse[2] * point.tint[2]) * rest) * (1.0f - mirror.z));
 }
 
 /** Emission and ambient light of a surface, or the background where there is none. */
@@ -61,7 +61,7 @@ SK_FUNCTION sk_vec3 sk_own_colour(SkSurfacePoint point, sk_vec3 direction, SkBac
         const SkMaterial material = materials[point.material];
         const sk_vec3 normal = sk_make3(point.normal[0], point.normal[1], point.normal[2]);
         const sk_vec3 light = sk_scale(sk_background(background, normal), background.ambient);
-        const sk_vec3 matte = sk_matte(material, point.cosine);
+        const sk_vec3 matte = sk_matte(material, point);
         return sk_make3(material.emission[0] + light.x * matte.x, material.emission[1] + light.y * matte.y,
                         material.emission[2] + light.z * matte.z);
     }
@@ -125,7 +125,7 @@ SK_FUNCTION void sk_add_light(sk_u32 i, SkLight light, SK_GLOBAL const SetkaRay*
         const SkMaterial material = materials[point.material];
         const sk_vec3 viewer = sk_negate(sk_load3(rays[i].direction));
         const sk_vec3 halfway = sk_unit(sk_add(to_light.unit, viewer));
-        const sk_vec3 matte = sk_matte(material, point.cosine);
+        const sk_vec3 matte = sk_matte(material, point);
         float highlight = sk_max(sk_facing(point, halfway), 0.0f);
         float strength = visible * facing;
         sk_u32 k;

@@ -85,6 +85,7 @@ SK_FUNCTION SkSurfacePoint sk_no_surface(void) {
     SkSurfacePoint r;
     sk_u32 k;
     for (k = 0u; k < 3u; ++k) r.position[k] = r.normal[k] = r.geometric[k] = r.light_origin[k] = 0.0f;
+    for (k = 0u; k < 3u; ++k) r.tint[k] = 1.0f;
     r.offset = 0.0f;
     r.cosine = 0.0f;
     r.material = SETKA_NO_HIT;
@@ -108,7 +109,8 @@ SK_FUNCTION SkSurfacePoint sk_surface_point(sk_vec3 direction, SetkaHit hit,
                                             SK_GLOBAL const SetkaInstance* instances,
                                             SK_GLOBAL const sk_u32* instance_starts,
                                             SK_GLOBAL const sk_u32* indices, SK_GLOBAL const float* normals,
-                                            SK_GLOBAL const float* triangles, float offset) {
+                                            SK_GLOBAL const float* colors, SK_GLOBAL const float* triangles,
+                                            float offset) {
     SkSurfacePoint r;
     SK_GLOBAL const SetkaInstance* instance = instances + hit.instance;
     SK_GLOBAL const float* corners = triangles + (size_t)(instance_starts[hit.instance] + hit.primitive) * 9u;
@@ -121,14 +123,14 @@ SK_FUNCTION SkSurfacePoint sk_surface_point(sk_vec3 direction, SetkaHit hit,
     const sk_measured across = sk_measure(sk_cross3(sk_measure(ab).unit, sk_measure(ac).unit));
     const int back = sk_dot3(across.unit, direction) > 0.0f;
     sk_vec3 geometric = back ? sk_negate(across.unit) : across.unit;
-    sk_vec3 normal, rise = sk_make3(0.0f, 0.0f, 0.0f);
+    sk_vec3 normal, rise = sk_make3(0.0f, 0.0f, 0.0f), tint = sk_make3(1.0f, 1.0f, 1.0f);
+    SK_GLOBAL const sk_u32* corner = indices + (size_t)(instance->first_index + hit.primitive) * 3u;
+    const sk_u32 first = instance->first_vertex;
     float reach;
     if (!(across.length > 0.0f)) geometric = viewer;
     normal = geometric;
 
     if (instance->flags & SETKA_INSTANCE_HAS_NORMALS) {
-        SK_GLOBAL const sk_u32* corner = indices + (size_t)(instance->first_index + hit.primitive) * 3u;
-        const sk_u32 first = instance->first_vertex;
         sk_vec3 na = sk_vertex_normal(map, sk_load3(normals + (size_t)(first + corner[0]) * 3u), geometric);
         sk_vec3 nb = sk_vertex_normal(map, sk_load3(normals + (size_t)(first + corner[1]) * 3u), geometric);
         sk_vec3 nc = sk_vertex_normal(map, sk_load3(normals + (size_t)(first + corner[2]) * 3u), geometric);
@@ -147,6 +149,10 @@ SK_FUNCTION SkSurfacePoint sk_surface_point(sk_vec3 direction, SetkaHit hit,
                                  sk_rise(position, c, nc), hit.v);
         }
     }
+    if (instance->flags & SETKA_INSTANCE_HAS_COLORS)
+        tint = sk_blend3(sk_load3(colors + (size_t)(first + corner[0]) * 3u), w,
+                         sk_load3(colors + (size_t)(first + corner[1]) * 3u), hit.u,
+                         sk_load3(colors + (size_t)(first + corner[2]) * 3u), hit.v);
     /* A flat surface is never bent: it has no other side to show. */
     normal = sk_bend_towards(normal, viewer, sk_min(SK_LEAST_COSINE, sk_dot3(geometric, viewer)));
 
@@ -168,6 +174,9 @@ SK_FUNCTION SkSurfacePoint sk_surface_point(sk_vec3 direction, SetkaHit hit,
     r.light_origin[2] = (position.z + rise.z) + geometric.z * reach;
     /* A reflecting matrix turns every triangle's winding around, but not the mesh inside out. */
     r.inside = (back != 0) != (map.determinant < 0.0f) ? 1u : 0u;
+    r.tint[0] = tint.x;
+    r.tint[1] = tint.y;
+    r.tint[2] = tint.z;
     return r;
 }
 

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#include "scene/checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "scene/vector.hpp"
+#include "setka/error.hpp"
+
+namespace setka {
+
+namespace {
+
+template <typename... Ts>
+[[noreturn]] void fail(const Ts&... parts) {
+    std::ostringstream message;
+    (message << ... << parts);
+    throw Error(ErrorCategory::InvalidData, message.str());
+}
+
+}  // namespace
+
+bool is_finite(const Float3& v) noexcept { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+bool is_finite(const Matrix34& m) noexcept {
+    return std::ranges::all_of(m.rows, [](float value) { return std::isfinite(value); });
+}
+
+void check_finite(const std::string& owner, const char* what, std::span<const Float3> values) {
+    const auto bad = std::ranges::find_if_not(values, [](const Float3& v) { return is_finite(v); });
+    if (bad != values.end()) fail(owner, ": ", what, ' ', bad - values.begin(), " is not finite");
+}
+
+void check(const Mesh& mesh, std::size_t index) {
+    const std::string owner = label("mesh", index, mesh);
+    const std::size_t vertices = mesh.positions.size();
+    if (vertices > std::numeric_limits<std::uint32_t>::max())
+        fail(owner, ": ", vertices, " positions are more than 2^32 - 1");
+    check_finite(owner, "position", mesh.positions);
+    const auto check_each = [&](const char* what, const std::vector<Float3>& values) {
+        if (!values.empty() && values.size() != vertices)
+            fail(owner, ": ", values.size(), ' ', what, "s for ", vertices, " positions; one each or none is accepted");
+        check_finite(owner, what, values);
+    };
+    check_each("normal", mesh.normals);
+    check_each("color", mesh.colors);
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        const Triangle& t = mesh.triangles[i];
+        const std::uint32_t largest = std::max({t.a, t.b, t.c});
+        if (largest >= vertices) fail(owner, ": triangle ", i, " uses vertex ", largest, " of ", vertices);
+    }
+}
+
+void check(const Material& material, std::size_t index) {
+    const auto require = [&](bool holds, const char* member, float value, const char* accepted) {
+        if (!holds)
+            fail(label("material", index, material), ": ", member, " = ", value, "; accepted is ", accepted);
+    };
+    const auto is_share = [](float value) { return value >= 0 && value <= 1; };
+    if (!is_finite(material.diffuse) || !is_finite(material.specular) || !is_finite(material.emission) ||
+        !is_finite(material.transmission))
+        fail(label("material", index, material), ": a colour is not finite");
+    require(material.shininess >= 1 && material.shininess <= 65536, "shininess", material.shininess,
+            "1 to 65536");
+    require(is_share(material.reflectivity), "reflectivity", material.reflectivity, "0 to 1");
+    require(is_share(material.transparency), "transparency", material.transparency, "0 to 1");
+    require(material.refractive_index > 0 && std::isfinite(material.refractive_index), "refractive_index",
+            material.refractive_index, "a positive number");
+}
+
+void check(const PointLight& light, std::size_t index) {
+    if (!is_finite(light.position) || !is_finite(light.intensity))
+        fail("point light ", index, ": its position or intensity is not finite");
+    if (!(light.reference_distance >= 0) || !std::isfinite(light.reference_distance))
+        fail("point light ", index, ": reference_distance = ", light.reference_distance,
+             "; accepted is 0 or a positive number");
+}
+
+void check(const DirectionalLight& light, std::size_t index) {
+    if (!is_finite(light.direction) || !is_finite(light.intensity))
+        fail("directional light ", index, ": its direction or intensity is not finite");
+    if (light.direction == Float3{}) fail("directional light ", index, ": its direction is zero");
+}
+
+void check(const Camera& camera) {
+    if (!is_finite(camera.eye) || !is_finite(camera.target) || !is_finite(camera.up))
+        fail("camera: its eye, target or up is not finite");
+    if (!(camera.vertical_fov_degrees > 0 && camera.vertical_fov_degrees < 180))
+        fail("camera: vertical_fov_degrees = ", camera.vertical_fov_degrees,
+             "; accepted is above 0 and below 180");
+    const glm::dvec3 view = to_glm(camera.target) - to_glm(camera.eye);
+    const glm::dvec3 up = to_glm(camera.up);
+    if (glm::dot(view, view) == 0) fail("camera: eye and target are the same point");
+    const double sine = glm::length(glm::cross(view, up)) / (glm::length(view) * glm::length(up));
+    if (!(sine > 1e-6)) fail("camera: up is zero or points along the view");
+}
+
+void check(const Background& background) {
+    if (!is_finite(background.zenith) || !is_finite(background.horizon) || !is_finite(background.ground) ||
+        !std::isfinite(background.ambient))
+        fail("background: a colour or the ambient share is not finite");
+}
+
+}  // namespace setka

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+/// Where do the vertices and triangles of meshes lie on the device? In tables that all meshes share, each in a range of its own.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "scene/room.hpp"
+#include "setka/device.hpp"
+#include "setka/scene.hpp"
+
+namespace setka {
+
+/// Where a mesh lies: its vertices in the tables of vertices, its triangles in that of indices.
+struct MeshPlace {
+    Range vertices, triangles;
+    bool has_normals = false, has_colors = false;
+};
+
+class MeshTables {
+  public:
+    /// Room for so many more vertices and triangles, in one piece each, so that place() need not grow the tables.
+    void reserve(Queue& queue, std::uint64_t vertices, std::uint64_t triangles);
+    /// Takes room for a mesh and uploads it; if that throws, the room is free again.
+    [[nodiscard]] MeshPlace place(Queue& queue, const Mesh& mesh);
+    /// Its room is free for others.
+    void remove(const MeshPlace& place);
+
+    void write_positions(Queue& queue, const MeshPlace& place, std::span<const Float3> values);
+    void write_normals(Queue& queue, const MeshPlace& place, std::span<const Float3> values);
+
+    /// Vertices and triangles of all meshes.
+    [[nodiscard]] std::uint64_t vertices() const noexcept { return vertex_room_.taken(); }
+    [[nodiscard]] std::uint64_t triangles() const noexcept { return triangle_room_.taken(); }
+    [[nodiscard]] std::uint64_t size_bytes() const noexcept;
+
+    [[nodiscard]] const Buffer<float>& positions() const noexcept { return positions_; }
+    [[nodiscard]] const Buffer<std::uint32_t>& indices() const noexcept { return indices_; }
+    /// Empty until a mesh has some; then zeros for meshes that have none, so that one vertex number serves all tables.
+    [[nodiscard]] const Buffer<float>& normals() const noexcept { return normals_; }
+    [[nodiscard]] const Buffer<float>& colors() const noexcept { return colors_; }
+
+  private:
+    void reserve_vertices(Queue& queue, std::uint64_t more);
+    void reserve_triangles(Queue& queue, std::uint64_t more);
+    void upload(Queue& queue, const MeshPlace& place, const Mesh& mesh);
+    /// Makes one of the tables that not every scene has.
+    void provide(Queue& queue, Buffer<float>& table, const char* name) const;
+
+    Room vertex_room_, triangle_room_;
+    Buffer<float> positions_, normals_, colors_;
+    Buffer<std::uint32_t> indices_;
+};
+
+}  // namespace setka
