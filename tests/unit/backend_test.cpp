@@ -186,7 +186,11 @@ TEST(PooledMemory, ComesFromThePoolWhereThatHasTheSize) {
 
 TEST(PooledMemory, TakesTheSmallestThatIsLargeEnoughAndNotMuchLarger) {
     Allocator allocator;
-    for (const std::uint64_t bytes : {3072, 2560, 2048}) allocator.allocate(bytes).reset();
+    allocator.device = std::make_shared<CountingDevice>(1 << 20);
+    {
+        std::vector<std::shared_ptr<Memory>> kept;
+        for (const std::uint64_t bytes : {3072, 2560, 2048}) kept.push_back(allocator.allocate(bytes));
+    }
     EXPECT_EQ(allocator.made, 3);
     const auto tight = allocator.allocate(2304);  // 2560 is larger by a ninth
     EXPECT_EQ(allocator.made, 3);
