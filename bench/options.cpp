@@ -81,6 +81,13 @@ constexpr Option own_options[] = {
      [](Options& o, const std::string& name, const std::string& value) {
          o.size = parse_number(name, value, 1u, 16384u);
      }},
+    {"--picture", "pixels of the pictures of moving scenes; default: 1920x1080",
+     [](Options& o, const std::string& name, const std::string& value) {
+         const std::size_t by = value.find('x');
+         if (by == std::string::npos) refuse(name, value, "WIDTHxHEIGHT");
+         o.picture_width = parse_number(name, value.substr(0, by), 1u, 16384u);
+         o.picture_height = parse_number(name, value.substr(by + 1), 1u, 16384u);
+     }},
     {"--steps", "dda, branch-free or both with a comma; default: both",
      [](Options& o, const std::string& name, const std::string& value) {
          o.steps.clear();

@@ -20,6 +20,7 @@ struct Options {
     std::vector<std::string> devices;    ///< "id" or "id/shape"; empty: every device
     std::vector<float> densities{GridOptions{}.density};  ///< of the grids that are timed
     std::uint32_t size = 1024;           ///< rays along each side of the square picture
+    std::uint32_t picture_width = 1920, picture_height = 1080;  ///< of moving scenes
     std::vector<GridStep> steps{GridStep::Dda, GridStep::BranchFree};
     std::vector<std::uint32_t> elements{1u << 16, 1u << 20, 1u << 24};  ///< sizes of scan and sort
 };

@@ -4,10 +4,14 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "bench/benchmarks.hpp"
+#include "bench/moving_scene.hpp"
 #include "bench/subject.hpp"
 #include "bench/timing.hpp"
+#include "workload/measure.hpp"
 
 namespace setka::bench {
 
@@ -67,6 +71,23 @@ void time_frame(benchmark::State& state, Subject& subject) {
         static_cast<double>(subject.rays().primary.size() + subject.rays().shadow.size());
 }
 
+/// A frame in which everything moves: edits, build and picture.
+void time_moving(benchmark::State& state, MovingScene& scene, Motion motion) {
+    std::vector<double> upload, build, picture;
+    time_work(state, scene.queue(), {"frame/s", 1, 0}, [&] {
+        const FrameParts parts = scene.frame(motion);
+        upload.push_back(parts.upload_ms);
+        build.push_back(parts.build_ms);
+        picture.push_back(parts.picture_ms);
+    });
+    auto& counters = state.counters;
+    counters["part_upload_ms"] = workload::median(upload);
+    counters["part_build_ms"] = workload::median(build);
+    counters["part_picture_ms"] = workload::median(picture);
+    counters["triangles"] = scene.triangle_count();
+    counters["rays"] = static_cast<double>(scene.statistics().primary_rays + scene.statistics().shadow_rays);
+}
+
 /// The benchmarks of one scene on one target at one density.
 class Registrar {
   public:
@@ -98,6 +119,16 @@ class Registrar {
     float density_;
 };
 
+void register_moving(Bench& bench, Target& target, const SceneCase& scene) {
+    for (const auto& [name, motion] : {std::pair("moving/", Motion::Instances), std::pair("deforming/", Motion::Vertices)})
+        add_benchmark(name + target.name() + '/' + scene.to_string(), [&, motion = motion](benchmark::State& state) {
+            auto& subject = bench.slot.get<MovingScene>("moving " + target.name() + ' ' + scene.to_string(), [&] {
+                return std::make_unique<MovingScene>(target, scene, bench.loader.load(scene), bench.options);
+            });
+            time_moving(state, subject, motion);
+        });
+}
+
 void register_scene(Bench& bench, Target& target, const SceneCase& scene, float density) {
     const Registrar registrar(bench, target, scene, density);
     registrar.add("build/" + target.name(), time_build);
@@ -117,6 +148,7 @@ void register_scenes(Bench& bench) {
     for (const SceneCase& scene : bench.scenes) {
         for (Target& target : bench.targets)
             for (const float density : bench.options.densities) register_scene(bench, target, scene, density);
+        for (Target& target : bench.targets) register_moving(bench, target, scene);
         register_embree(bench, scene);
     }
 }
