@@ -44,8 +44,9 @@ class MovingScene final : public Fixture {
     void check(Motion motion, const std::string& who);
 
     Queue queue_;
-    Scene host_;  ///< as it is now
+    Scene host_;  ///< as it is now, but for its vertices
     std::vector<Matrix34> places_;
+    std::vector<std::vector<Float3>> smaller_;  ///< each mesh's vertices in every other frame
     DeviceScene scene_;
     Camera camera_;
     std::unique_ptr<GridBuilder> builder_;
