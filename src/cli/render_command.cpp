@@ -14,6 +14,7 @@
 #include "cli/progress.hpp"
 #include "cli/scene_input.hpp"
 #include "cli/structure.hpp"
+#include "setka/error.hpp"
 #include "setka/io.hpp"
 #include "setka/renderer.hpp"
 
@@ -101,12 +102,32 @@ void print_text(const Options& options, const Device& device, const DeviceScene&
                    statistics.heat_maximum);
 }
 
+enum class Ending { Complete, Interrupted };
+
+struct Rendered {
+    Image image;
+    Ending ending = Ending::Complete;
+};
+
+/// Adds passes until all are there, or until an interrupt after at least one: what there is then is a picture too.
+[[nodiscard]] Rendered add_passes(Queue& queue, ProgressiveRender& picture) {
+    try {
+        while (picture.passes_done() < picture.passes()) picture.add_pass();
+        Image image = picture.image();
+        end_interruptible_work();
+        return {std::move(image), Ending::Complete};
+    } catch (const Error& error) {
+        if (error.category() != ErrorCategory::Cancelled || picture.passes_done() == 0) throw;
+    }
+    queue.set_stop_token({});  // a second interrupt ends the program
+    return {picture.image(), Ending::Interrupted};
+}
+
 [[nodiscard]] ExitCode run(Options options) {
     std::tie(options.render.width, options.render.height) = options.size;
     io::check_image_writable(options.output);
     Progress progress(options.progress);
     options.render.progress = [&](double share) { progress.update("rendering", share); };
-    Renderer renderer(options.render);  // checks its options before the work starts
     Times times;
 
     progress.update("loading", 0);
@@ -129,13 +150,18 @@ void print_text(const Options& options, const Device& device, const DeviceScene&
     times.build_ms = build_watch.elapsed_ms();
 
     const workload::Stopwatch render_watch;
-    const Image image = renderer.render(queue, device_scene, *structure, camera);
+    ProgressiveRender picture(queue, device_scene, *structure, camera, options.render);
+    const auto [image, ending] = add_passes(queue, picture);
     times.render_ms = render_watch.elapsed_ms();
-    end_interruptible_work();
     io::write_image(options.output, image);
     progress.clear();
-    if (options.as_json) print_json(options, device, device_scene, *structure, renderer.statistics(), times);
-    else print_text(options, device, device_scene, renderer.statistics(), times);
+    if (ending == Ending::Interrupted) {
+        fmt::print(stderr, "setka: interrupted; {} has {} of {} samples a pixel\n", options.output,
+                   picture.passes_done(), picture.passes());
+        return exit_interrupted;
+    }
+    if (options.as_json) print_json(options, device, device_scene, *structure, picture.statistics(), times);
+    else print_text(options, device, device_scene, picture.statistics(), times);
     return exit_ok;
 }
 

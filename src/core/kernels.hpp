@@ -21,8 +21,9 @@
     X(trace_grid_cost_dda) X(trace_grid_cost_free)                                                         \
     X(trace_brute_count) X(trace_brute_all) X(trace_grid_count) X(trace_grid_all)                          \
     X(shade_camera_rays) X(shade_surface) X(shade_shadow_rays) X(shade_shadow_narrow) X(shade_light)       \
-    X(shade_child_count) X(shade_child_emit) X(shade_gather) X(shade_normals) X(shade_depth)               \
-    X(shade_cost) X(shade_ramp) X(shade_resolve) X(shade_encode)
+    X(shade_child_count) X(shade_child_emit) X(shade_gather) X(shade_normals) X(shade_ramp)                \
+    X(shade_add_colours) X(shade_add_depths) X(shade_add_costs)                                            \
+    X(shade_mean_colour) X(shade_mean_depth) X(shade_mean_cost) X(shade_encode)
 
 namespace setka {
 

@@ -108,7 +108,7 @@ Buffer<Ray> camera_rays(Queue& queue, const Camera& camera, std::uint32_t width,
     Buffer<Ray> rays = queue.make_buffer<Ray>(count, "camera rays");
     queue.impl().begin_stage("camera rays");
     launch_items(queue, Kernel::shade_camera_rays, static_cast<std::uint32_t>(count), pinhole,
-                 std::uint32_t(0), rays);
+                 std::uint32_t(0), std::uint32_t(0), samples_per_axis * samples_per_axis, rays);
     return rays;
 }
 

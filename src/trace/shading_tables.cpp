@@ -89,10 +89,18 @@ bool any_transparent(const std::vector<Material>& materials) {
                        [](const Material& m) { return m.transparency > 0; });
 }
 
-std::array<float, 255> make_srgb_thresholds() {
-    std::array<float, 255> thresholds{};
-    for (int code = 1; code <= 255; ++code)
-        thresholds[code - 1] = static_cast<float>(exact::srgb_to_linear((code - 0.5) / 255));
+bool any_onward(const std::vector<Material>& materials) {
+    return std::any_of(materials.begin(), materials.end(),
+                       [](const Material& m) { return m.reflectivity != 0 || m.transparency != 0; });
+}
+
+const std::array<float, 255>& srgb_thresholds() {
+    static const std::array<float, 255> thresholds = [] {
+        std::array<float, 255> made{};
+        for (int code = 1; code <= 255; ++code)
+            made[code - 1] = static_cast<float>(exact::srgb_to_linear((code - 0.5) / 255));
+        return made;
+    }();
     return thresholds;
 }
 

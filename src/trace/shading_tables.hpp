@@ -18,10 +18,12 @@ namespace setka {
 
 /// True if light can pass some surface of the scene.
 [[nodiscard]] bool any_transparent(const std::vector<Material>& materials);
+/// True unless every ray ends at the first surface that it meets.
+[[nodiscard]] bool any_onward(const std::vector<Material>& materials);
 
 /// thresholds[c - 1] is the least linear value with 8-bit sRGB code c: where rounding to the nearest code
-/// goes up.
-[[nodiscard]] std::array<float, 255> make_srgb_thresholds();
+/// goes up. Computed once, since it takes as long as a small picture.
+[[nodiscard]] const std::array<float, 255>& srgb_thresholds();
 
 /// Linear RGB triples from cold to hot: dark blue, violet, red, orange, yellow, white. Each knot is lighter
 /// than the last, so that the ramp reads the same without colours.

@@ -4,8 +4,8 @@
 #include "trace/whitted.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <utility>
 
@@ -42,6 +42,18 @@ std::uint32_t camera_mask(std::uint32_t mask) {
     return mask == SETKA_MASK_OPAQUE ? mask : mask & ~SETKA_MASK_OPAQUE;
 }
 
+void RayCounts::add(RayCounts other) {
+    secondary += other.secondary;
+    shadow += other.shadow;
+    std::ranges::move(other.pending_shadow, std::back_inserter(pending_shadow));
+}
+
+void RayCounts::collect(Queue& queue) {
+    for (const auto& numbers : pending_shadow)
+        for (const std::uint32_t n : queue.download(numbers)) shadow += n;
+    pending_shadow.clear();
+}
+
 /// What is kept of a level for the way up.
 struct WhittedPasses::Level {
     Buffer<float> colours;
@@ -62,7 +74,8 @@ WhittedPasses::WhittedPasses(Queue& queue, const DeviceScene& scene, const Struc
       offset_(std::ldexp(magnitude(structure.geometry().bounds), -20)),
       background_(make_background(scene.background())),
       lights_(make_light_table(scene)),
-      has_transparent_(any_transparent(scene.materials())) {
+      has_transparent_(any_transparent(scene.materials())),
+      has_onward_(any_onward(scene.materials())) {
     const std::vector<SkMaterial> materials = make_material_table(scene.materials());
     materials_ = queue.upload(std::span(materials), "materials");
 }
@@ -89,8 +102,8 @@ void WhittedPasses::add_lights(const Buffer<Ray>& rays, const Buffer<SkSurfacePo
     const auto occluded = queue_.make_buffer<std::uint32_t>(rays.size(), "occlusion");
     const auto opaque = has_transparent_ ? queue_.make_buffer<std::uint32_t>(rays.size(), "opaque occlusion")
                                          : Buffer<std::uint32_t>();
-    std::vector<std::uint32_t> active(lights_.size(), 0);
-    const auto active_counts = queue_.upload(std::span(active), "shadow ray counts");
+    const auto active_counts = queue_.make_buffer<std::uint32_t>(lights_.size(), "shadow ray counts");
+    queue_.impl().fill(*active_counts.memory(), 0, active_counts.size_bytes());
 
     for (std::uint32_t index = 0; index < lights_.size(); ++index) {
         const SkLight& light = lights_[index];
@@ -107,15 +120,13 @@ void WhittedPasses::add_lights(const Buffer<Ray>& rays, const Buffer<SkSurfacePo
         launch_items(queue_, Kernel::shade_light, items(rays), light, rays, points, materials_, occluded,
                      opaque, std::uint32_t(has_transparent_), colours);
     }
-    queue_.download(active_counts, std::span(active));
-    for (const std::uint32_t n : active) count.shadow += n;
+    count.pending_shadow.push_back(active_counts);
 }
 
 Buffer<float> WhittedPasses::colours(Buffer<Ray> rays, RayCounts& count) const {
     std::vector<Level> levels;
-    auto throughputs = queue_.make_buffer<float>(rays.size(), "throughputs");
-    queue_.impl().fill(*throughputs.memory(), std::bit_cast<std::uint32_t>(1.0f), throughputs.size_bytes());
-    Buffer<float> weights;
+    Buffer<float> throughputs,
+        weights;  // none of the first level's, whose rays have all their light before them
     for (std::uint32_t depth = 0;; ++depth) {
         const std::uint32_t n = items(rays);
         Level& level = levels.emplace_back();
@@ -123,14 +134,15 @@ Buffer<float> WhittedPasses::colours(Buffer<Ray> rays, RayCounts& count) const {
         level.colours = queue_.make_buffer<float>(3 * rays.size(), "colours");
         const auto points = surfaces(rays, level.colours);
         add_lights(rays, points, level.colours, count);
-        if (depth == max_depth_) break;
+        if (depth == max_depth_ || !has_onward_) break;
 
         queue_.impl().begin_stage("spawn rays");
         auto offsets = queue_.make_buffer<std::uint32_t>(rays.size() + 1, "child offsets");
         std::uint64_t total = 0;
         {
             const auto counts = queue_.make_buffer<std::uint32_t>(rays.size(), "child counts");
-            launch_items(queue_, Kernel::shade_child_count, n, rays, points, materials_, throughputs, counts);
+            launch_items(queue_, Kernel::shade_child_count, n, rays, points, materials_, throughputs,
+                         std::uint32_t(depth > 0), counts);
             total = exclusive_scan(queue_, counts, n, offsets, "mirror and refraction rays");
         }
         if (total == 0) break;
@@ -144,8 +156,8 @@ Buffer<float> WhittedPasses::colours(Buffer<Ray> rays, RayCounts& count) const {
         auto child_throughputs = queue_.make_buffer<float>(total, "throughputs");
         weights = queue_.make_buffer<float>(3 * total, "weights");
         queue_.impl().begin_stage("spawn rays");
-        launch_items(queue_, Kernel::shade_child_emit, n, rays, points, materials_, throughputs, offsets,
-                     child_rays, weights, child_throughputs);
+        launch_items(queue_, Kernel::shade_child_emit, n, rays, points, materials_, throughputs,
+                     std::uint32_t(depth > 0), offsets, child_rays, weights, child_throughputs);
         level.offsets = std::move(offsets);
         rays = std::move(child_rays);
         throughputs = std::move(child_throughputs);

@@ -10,9 +10,17 @@
 
 namespace setka {
 
+/// How many rays were traced. Those towards lights are counted on the device, and added up here when somebody
+/// asks: shading waits for no number that it does not need.
 struct RayCounts {
     std::uint64_t secondary = 0;
     std::uint64_t shadow = 0;
+    std::vector<Buffer<std::uint32_t>>
+        pending_shadow;  ///< of each level of rays one, with a number for each light
+
+    void add(RayCounts other);
+    /// Waits, and moves pending_shadow to shadow.
+    void collect(Queue& queue);
 };
 
 /// The query mask for what the camera sees: without the opaque bit, which would let it see what the other
@@ -30,7 +38,8 @@ class WhittedPasses {
     WhittedPasses(Queue& queue, const DeviceScene& scene, const Structure& structure,
                   const TraceOptions& trace, std::uint32_t max_depth);
 
-    /// Three floats a ray. `count` is raised by the rays that were traced for it.
+    /// Three floats a ray. `count` is raised by the rays that are traced for it. Waits only for the number of
+    /// rays that go on, where some material lets them.
     [[nodiscard]] Buffer<float> colours(Buffer<Ray> rays, RayCounts& count) const;
     /// The surfaces that `rays` meet first.
     [[nodiscard]] Buffer<SkSurfacePoint> surfaces(const Buffer<Ray>& rays) const;
@@ -54,6 +63,7 @@ class WhittedPasses {
     SkBackground background_;
     std::vector<SkLight> lights_;
     bool has_transparent_;
+    bool has_onward_;  // some surface mirrors, or lets rays through
     Buffer<SkMaterial> materials_;
 };
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What does Ctrl-C do to the program? It ends soon, with one line, exit code 130 and nothing half written.
+/// What does Ctrl-C do to the program? It ends soon, with one line, exit code 130 and nothing half written. A picture that has
+/// samples of every pixel is whole.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -64,6 +65,23 @@ TEST(Interrupt, EndsARenderAndLeavesNoPicture) {
                                           "4096x4096", "--samples", "8", "--progress"},
                                          says("rendering: ")));
     EXPECT_TRUE(folder.is_empty());
+}
+
+/// A picture of which some samples are there is worth keeping, and says how many.
+TEST(Interrupt, KeepsThePictureOfFinishedPasses) {
+    SETKA_NEED_DEVICE();
+    const Folder folder;
+    const std::string file = folder / "picture.png";
+    // 256 passes: at 10% some have been finished, and many are to come.
+    const Outcome outcome = run_and_interrupt(
+        {"render", "showcase", "-o", file, "--size", "400x300", "--samples", "16", "--progress"}, says("rendering: 10%"));
+    EXPECT_EQ(outcome.exit_code, 130) << outcome.errors;
+    EXPECT_EQ(outcome.output, "");
+    EXPECT_THAT(without_progress(outcome.errors),
+                ::testing::MatchesRegex("setka: interrupted; .*picture.png has [1-9][0-9]* of 256 samples a pixel\n"));
+    EXPECT_THAT(read_file(file), ::testing::StartsWith("\x89PNG"));
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
+    EXPECT_LT(outcome.seconds, 60);
 }
 
 TEST(Interrupt, EndsAVerification) {

@@ -45,9 +45,27 @@ Work rendering(const std::string& name, setka::View view) {
     return {name,
             [view](Queue& queue, const World& world) {
                 setka::Renderer renderer(
-                    {.width = 12, .height = 8, .max_depth = 3, .view = view, .trace = {}, .progress = {}});
+                    {.width = 12, .height = 8, .max_depth = 3, .view = view, .trace = {}, .pixels = {}, .progress = {}});
                 const auto image = renderer.render(queue, world.on_device, world.grid, *world.scene.camera);
                 return Bytes().add(image.linear).add(image.srgb).get();
+            },
+            Work::OnOutOfMemory::MayRecover};
+}
+
+Work rendering_in_passes() {
+    return {"render_passes",
+            [](Queue& queue, const World& world) {
+                setka::RenderOptions options;
+                options.width = 12;
+                options.height = 8;
+                options.samples_per_axis = 2;
+                setka::ProgressiveRender picture(queue, world.on_device, world.grid, *world.scene.camera, options);
+                Bytes bytes;
+                while (picture.passes_done() < picture.passes()) {
+                    picture.add_pass();
+                    bytes.add(picture.image().linear);
+                }
+                return bytes.get();
             },
             Work::OnOutOfMemory::MayRecover};
 }
@@ -188,6 +206,7 @@ const std::vector<Work>& all_work() {
         rendering("render_normals", setka::View::Normals),
         rendering("render_depth", setka::View::Depth),
         rendering("render_tests", setka::View::Tests),
+        rendering_in_passes(),
     };
     return all;
 }

@@ -151,7 +151,7 @@ TEST_F(Render, CodesFollowTheSrgbCurve) {
                                  -std::numeric_limits<float>::infinity()};
     const std::size_t special = linear.size();
     for (int i = 0; i <= 100000; ++i) linear.push_back(static_cast<float>(i) / 100000);
-    const auto thresholds = make_srgb_thresholds();
+    const auto& thresholds = srgb_thresholds();
     const auto values = queue.upload(std::span<const float>(linear), "values");
     const auto table = queue.upload(std::span<const float>(thresholds), "thresholds");
     const auto buffer = queue.make_buffer<std::uint8_t>(linear.size(), "codes");

@@ -198,12 +198,12 @@ SK_FUNCTION sk_onward sk_make_onward(SkSurfacePoint point, SkMaterial material, 
 
 SK_FUNCTION sk_u32 sk_child_count(sk_u32 i, SK_GLOBAL const SetkaRay* rays,
                                   SK_GLOBAL const SkSurfacePoint* points,
-                                  SK_GLOBAL const SkMaterial* materials, SK_GLOBAL const float* throughputs) {
+                                  SK_GLOBAL const SkMaterial* materials, float throughput) {
     const SkSurfacePoint point = points[i];
     if (point.material == SETKA_NO_HIT) return 0u;
     {
         const sk_onward onward =
-            sk_make_onward(point, materials[point.material], sk_load3(rays[i].direction), throughputs[i]);
+            sk_make_onward(point, materials[point.material], sk_load3(rays[i].direction), throughput);
         return (sk_largest_weight(onward.mirror_weight) > 0.0f ? 1u : 0u) +
                (sk_largest_weight(onward.refraction_weight) > 0.0f ? 1u : 0u);
     }
@@ -226,12 +226,11 @@ SK_FUNCTION void sk_store_child(sk_u32 at, SkSurfacePoint point, float side, sk_
 
 SK_FUNCTION void sk_emit_children(sk_u32 i, SK_GLOBAL const SetkaRay* rays,
                                   SK_GLOBAL const SkSurfacePoint* points,
-                                  SK_GLOBAL const SkMaterial* materials, SK_GLOBAL const float* throughputs,
+                                  SK_GLOBAL const SkMaterial* materials, float throughput,
                                   SK_GLOBAL const sk_u32* offsets, SK_GLOBAL SetkaRay* child_rays,
                                   SK_GLOBAL float* child_weights, SK_GLOBAL float* child_throughputs) {
     const SkSurfacePoint point = points[i];
     if (point.material != SETKA_NO_HIT) {
-        const float throughput = throughputs[i];
         const sk_onward onward =
             sk_make_onward(point, materials[point.material], sk_load3(rays[i].direction), throughput);
         sk_u32 at = offsets[i];
