@@ -23,7 +23,8 @@ namespace setka {
 /// for commit(), which uploads what has changed. Until then structures cannot be built of the scene, nor pictures rendered.
 /// Structures that were built before keep what they need, but pictures need a structure that was built of the scene as it is.
 ///
-/// A call that throws leaves the scene as it was. Transfers are done in the order of `queue`, which is that of all others that use
+/// A call that throws InvalidArgument, InvalidData or OutOfMemory leaves the scene as it was. One that is cancelled, or ended by a failure of the
+/// device, may have moved some of the vertices it was given. Transfers are done in the order of `queue`, which is that of all others that use
 /// the scene: what was enqueued before sees the old vertices.
 class DeviceScene {
   public:
@@ -48,7 +49,8 @@ class DeviceScene {
     /// each vertex, or if there are normals for a mesh without; InvalidData for one that is not finite.
     void set_vertices(Queue& queue, std::uint32_t mesh, std::span<const Float3> positions,
                       std::span<const Float3> normals = {});
-    /// The same from buffers on the device, 3 floats a vertex. Whether positions are finite is found by the build.
+    /// The same from buffers on the device, 3 floats a vertex, which must not be the scene's own. Whether positions are finite is found by
+    /// the build.
     void set_vertices(Queue& queue, std::uint32_t mesh, const Buffer<float>& positions,
                       const Buffer<float>& normals = {});
     /// Frees the number and its memory for other meshes. Throws InvalidArgument while an instance has the mesh.
@@ -85,7 +87,7 @@ class DeviceScene {
     /// Numbers of instances, empty places included.
     [[nodiscard]] std::uint32_t instance_count() const noexcept;
     [[nodiscard]] std::uint64_t size_bytes() const noexcept;
-    /// Bits that the masks of all instances share: a query with one of them need not look at instances.
+    /// Bits that the masks of all instances with triangles share: a query with one of them need not look at instances.
     [[nodiscard]] std::uint32_t common_mask() const noexcept;
 
     // Meshes lie one behind the other, where SetkaInstance says; there may be room between and after them.

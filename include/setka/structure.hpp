@@ -26,7 +26,7 @@ struct WorldGeometry {
     Bounds bounds{};
     std::uint32_t triangle_count = 0;
     std::uint32_t instance_count = 0;
-    std::uint32_t common_mask = 0;           ///< bits that every instance's mask has
+    std::uint32_t common_mask = 0;           ///< bits that the mask of every instance with triangles has
     Buffer<float> triangles;                 ///< 9 a triangle: v0, v1, v2
     Buffer<std::uint32_t> instance_starts;   ///< instance_count + 1
     Buffer<::SetkaInstance> instances;

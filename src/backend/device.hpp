@@ -113,6 +113,10 @@ class Device : public std::enable_shared_from_this<Device> {
     void release(std::uint64_t size_bytes) noexcept { in_use_bytes_ -= size_bytes; }
     [[nodiscard]] std::uint64_t in_use_bytes() const noexcept { return in_use_bytes_; }
     [[nodiscard]] std::uint64_t peak_bytes() const noexcept { return peak_bytes_; }
+    /// Bytes of allocations that are larger than what was asked for.
+    void add_slack(std::uint64_t size_bytes) noexcept { slack_bytes_ += size_bytes; }
+    void remove_slack(std::uint64_t size_bytes) noexcept { slack_bytes_ -= size_bytes; }
+    [[nodiscard]] std::uint64_t slack_bytes() const noexcept { return slack_bytes_; }
     void count_driver_allocation() noexcept { ++driver_allocations_; }
     [[nodiscard]] std::uint64_t driver_allocations() const noexcept { return driver_allocations_; }
     void reset_peak() noexcept { peak_bytes_ = in_use_bytes_.load(); }
@@ -122,6 +126,7 @@ class Device : public std::enable_shared_from_this<Device> {
     bool is_probed_ = false;
     std::atomic<std::uint64_t> in_use_bytes_{0};
     std::atomic<std::uint64_t> peak_bytes_{0};
+    std::atomic<std::uint64_t> slack_bytes_{0};
     std::atomic<std::uint64_t> driver_allocations_{0};
 };
 

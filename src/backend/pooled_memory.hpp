@@ -25,6 +25,7 @@ class PooledMemory : public Memory {
     ~PooledMemory() override {
         if (!device_) return;
         device_->release(size_bytes());
+        device_->remove_slack(pooled_bytes_ - size_bytes());
         pool_->give(pooled_bytes_, std::move(buffer));
     }
 
@@ -35,15 +36,19 @@ class PooledMemory : public Memory {
     template <typename MakeHandle>
     void fill_from(std::shared_ptr<Device> device, std::shared_ptr<Pool<Handle>> pool,
                    std::uint64_t pooled_bytes, MakeHandle make_handle) {
-        if (auto pooled = pool->take(pooled_bytes)) {
+        // Neither what is larger than asked for nor unused allocations of other sizes must push the total over the budget.
+        const std::uint64_t budget = device->options().memory_budget_bytes;
+        const std::uint64_t held = device->in_use_bytes() + device->slack_bytes();
+        auto pooled = pool->take(pooled_bytes);
+        if (pooled && (pooled->size_bytes == pooled_bytes || held + (pooled->size_bytes - size_bytes()) <= budget)) {
             buffer = std::move(pooled->handle);
             pooled_bytes = pooled->size_bytes;
         } else {
-            // Unused allocations of other sizes must not push the total over the budget.
-            if (device->in_use_bytes() + pool->cached_bytes() > device->options().memory_budget_bytes)
-                pool->clear();
+            pooled.reset();
+            if (held + pool->cached_bytes() > budget) pool->clear();
             buffer = make_or_trim(*device, pooled_bytes, make_handle);
         }
+        device->add_slack(pooled_bytes - size_bytes());
         pooled_bytes_ = pooled_bytes;
         pool_ = std::move(pool);
         device_ = std::move(device);  // from here on the destructor releases

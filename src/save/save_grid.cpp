@@ -45,9 +45,12 @@ Digest digest_of(const HostTables& tables) {
     return digester.digest();
 }
 
-std::uint32_t common_mask_of(std::span<const ::SetkaInstance> list) {
+/// Of the instances that have triangles.
+std::uint32_t common_mask_of(const HostTables& tables) {
     std::uint32_t mask = ~0u;
-    for (const ::SetkaInstance& instance : list) mask &= instance.mask;
+    const std::size_t count = std::min(tables.instances.size() + 1, tables.instance_starts.size());
+    for (std::size_t i = 0; i + 1 < count; ++i)
+        if (tables.instance_starts[i] != tables.instance_starts[i + 1]) mask &= tables.instances[i].mask;
     return mask;
 }
 
@@ -61,7 +64,7 @@ std::vector<std::string> geometry_violations(const WorldGeometry& geometry, cons
     };
     require("triangle_count", geometry.triangle_count, tables.header.triangle_count);
     require("instance_count", geometry.instance_count, tables.header.instance_count);
-    require("common_mask", geometry.common_mask, common_mask_of(tables.instances));
+    require("common_mask", geometry.common_mask, common_mask_of(tables));
     return list;
 }
 
@@ -207,7 +210,7 @@ Grid upload(Queue& queue, const Examined& examined) {
     geometry.bounds = tables.bounds;
     geometry.triangle_count = tables.header.triangle_count;
     geometry.instance_count = tables.header.instance_count;
-    geometry.common_mask = common_mask_of(tables.instances);
+    geometry.common_mask = common_mask_of(tables);
     geometry.triangles = queue.upload(tables.triangles, "world triangles");
     geometry.instance_starts = queue.upload(tables.instance_starts, "instance starts");
     geometry.instances = queue.upload(tables.instances, "instances");

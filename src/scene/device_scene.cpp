@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string>
 
 #include "scene/checks.hpp"
@@ -26,10 +27,19 @@ std::string number(std::uint64_t value) { return std::to_string(value); }
 
 /// The lowest number that is free.
 template <typename Entry>
-std::uint32_t free_number(const std::vector<Entry>& entries, std::uint32_t free_entries) {
-    if (free_entries == 0) return static_cast<std::uint32_t>(entries.size());
-    const auto it = std::ranges::find_if(entries, [](const Entry& entry) { return !entry.is_live; });
-    return static_cast<std::uint32_t>(it - entries.begin());
+std::uint32_t free_number(const std::vector<Entry>& entries, const std::set<std::uint32_t>& free) {
+    return free.empty() ? static_cast<std::uint32_t>(entries.size()) : *free.begin();
+}
+
+/// Puts an entry at a free number.
+template <typename Entry>
+void put(std::vector<Entry>& entries, std::set<std::uint32_t>& free, std::uint32_t index, Entry entry) {
+    if (index == entries.size()) {
+        entries.push_back(std::move(entry));
+    } else {
+        entries[index] = std::move(entry);
+        free.erase(index);
+    }
 }
 
 void check_transform(const Matrix34& transform, std::uint32_t instance) {
@@ -93,14 +103,8 @@ std::uint32_t DeviceScene::add_mesh(Queue& queue, const Mesh& mesh) {
     const auto index = free_number(state.meshes, state.free_meshes);
     check(mesh, index);
     check_room(state.tables, mesh, MeshPlace{}, 0);
-    if (index == state.meshes.size()) state.meshes.reserve(index + std::size_t(1));
-    const MeshEntry entry{state.tables.place(queue, mesh), 0, true};
-    if (index == state.meshes.size()) {
-        state.meshes.push_back(entry);
-    } else {
-        state.meshes[index] = entry;
-        --state.free_meshes;
-    }
+    state.meshes.reserve(state.meshes.size() + 1);  // so that nothing fails when the mesh has its place
+    put(state.meshes, state.free_meshes, index, {state.tables.place(queue, mesh), 0, true});
     return index;
 }
 
@@ -148,16 +152,19 @@ void DeviceScene::set_vertices(Queue& queue, std::uint32_t mesh, std::span<const
     check_finite(owner, "position", positions);
     check_finite(owner, "normal", normals);
     state_->tables.write_positions(queue, place, positions);
-    state_->tables.write_normals(queue, place, normals);
+    if (!normals.empty()) state_->tables.write_normals(queue, place, normals);
 }
 
 void DeviceScene::set_vertices(Queue& queue, std::uint32_t mesh, const Buffer<float>& positions,
                                const Buffer<float>& normals) {
     const MeshPlace& place = state_->mesh(mesh).place;
     check_vertices(place, mesh, vertices_in("positions", positions), vertices_in("normals", normals));
+    const MeshTables& tables = state_->tables;
+    if (positions.memory() == tables.positions().memory() || (!normals.empty() && normals.memory() == tables.normals().memory()))
+        refuse("positions or normals for mesh ", number(mesh), " are the scene's own table; another buffer is accepted");
     const std::size_t first = 3 * place.vertices.first;
-    queue.copy(positions, 0, state_->tables.positions(), first, positions.size());
-    queue.copy(normals, 0, state_->tables.normals(), first, normals.size());
+    queue.copy(positions, 0, tables.positions(), first, positions.size());
+    if (!normals.empty()) queue.copy(normals, 0, tables.normals(), first, normals.size());
 }
 
 void DeviceScene::remove_mesh(std::uint32_t mesh) {
@@ -170,21 +177,16 @@ void DeviceScene::remove_mesh(std::uint32_t mesh) {
         refuse("mesh ", number(mesh), " cannot be removed: it is that of ", number(entry.users), " instances, such as ",
                number(std::uint64_t(user - state.entries.begin())), "; remove these first");
     }
+    state.free_meshes.insert(mesh);
     state.tables.remove(entry.place);
     entry = {};
-    ++state.free_meshes;
 }
 
 std::uint32_t DeviceScene::add_instance(const Instance& instance) {
     State& state = *state_;
     const auto index = free_number(state.entries, state.free_entries);
     check_instance(state.meshes, state.materials, instance, index);
-    if (index == state.entries.size()) {
-        state.entries.push_back({instance, true, false});
-    } else {
-        state.entries[index] = {instance, true, state.entries[index].is_edited};
-        --state.free_entries;
-    }
+    put(state.entries, state.free_entries, index, {instance, true, false});
     ++state.meshes[instance.mesh].users;
     state.layout_changed = true;
     return index;
@@ -194,12 +196,12 @@ void DeviceScene::set_instance(std::uint32_t number, const Instance& instance) {
     State& state = *state_;
     InstanceEntry& entry = state.entry(number);
     check_instance(state.meshes, state.materials, instance, number);
+    state.edit(number);  // this may fail; what follows may not
     if (instance.mesh != entry.instance.mesh) {
         --state.meshes[entry.instance.mesh].users;
         ++state.meshes[instance.mesh].users;
         state.layout_changed = true;
     }
-    state.edit(number);
     entry.instance = instance;
 }
 
@@ -213,15 +215,14 @@ void DeviceScene::set_transform(std::uint32_t number, const Matrix34& transform)
 void DeviceScene::remove_instance(std::uint32_t number) {
     State& state = *state_;
     InstanceEntry& entry = state.entry(number);
+    state.free_entries.insert(number);
     --state.meshes[entry.instance.mesh].users;
     entry.is_live = false;
-    ++state.free_entries;
     // Places after the last instance are no more.
     while (!state.entries.empty() && !state.entries.back().is_live) {
         state.entries.pop_back();
-        --state.free_entries;
+        state.free_entries.erase(static_cast<std::uint32_t>(state.entries.size()));
     }
-    std::erase_if(state.edited, [&](std::uint32_t index) { return index >= state.entries.size(); });
     state.layout_changed = true;
 }
 
@@ -237,11 +238,11 @@ void DeviceScene::set_material(std::uint32_t number, const Material& material) {
     if (number >= state.materials.size())
         refuse(absence("material", number, state.materials.size()));
     check(material, number);
-    const bool changes_masks = is_opaque(material) != is_opaque(state.materials[number]);
-    state.materials[number] = material;
-    if (!changes_masks) return;
-    for (std::uint32_t index = 0; index < state.entries.size(); ++index)
-        if (state.entries[index].is_live && state.entries[index].instance.material == number) state.edit(index);
+    Material copy = material;
+    if (is_opaque(material) != is_opaque(state.materials[number]))
+        for (std::uint32_t index = 0; index < state.entries.size(); ++index)
+            if (state.entries[index].is_live && state.entries[index].instance.material == number) state.edit(index);
+    state.materials[number] = std::move(copy);
 }
 
 void DeviceScene::set_lights(std::vector<PointLight> point_lights, std::vector<DirectionalLight> directional_lights) {

@@ -92,6 +92,7 @@ auto DeviceScene::State::changes(const std::vector<std::uint32_t>& new_starts) c
 
 Buffer<::SetkaInstance> DeviceScene::State::with(Queue& queue, const std::vector<Change>& changed) const {
     Buffer<::SetkaInstance> table = instances;
+    if (changed.empty() && instances.size() == entries.size()) return table;
     const bool is_shared = instances.memory().use_count() > 2;  // this one's copy, above, is the second
     if (is_shared || instances.size() != entries.size()) {
         table = queue.make_buffer<::SetkaInstance>(entries.size(), "instances");
@@ -126,7 +127,7 @@ void DeviceScene::State::commit(Queue& queue) {
     for (const Change& change : changed) records[change.number] = change.record;
     common_mask = ~0u;
     for (std::size_t index = 0; index < entries.size(); ++index)
-        if (entries[index].is_live) common_mask &= records[index].mask;
+        if (starts[index] != starts[index + 1]) common_mask &= records[index].mask;
     for (const std::uint32_t index : edited)
         if (index < entries.size()) entries[index].is_edited = false;
     edited.clear();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -27,9 +28,10 @@ struct DeviceScene::State {
     MeshTables tables;
     std::vector<MeshEntry> meshes;
     std::vector<InstanceEntry> entries;
-    std::uint32_t free_meshes = 0, free_entries = 0;  ///< among them
+    std::set<std::uint32_t> free_meshes, free_entries;  ///< numbers among them
 
-    std::vector<std::uint32_t> edited;  ///< numbers of instances, each once
+    /// Numbers of instances. Where places have come and gone, which layout_changed tells, it may hold some twice and some that are no more.
+    std::vector<std::uint32_t> edited;
     bool layout_changed = false;        ///< instances are more or fewer, or a mesh of theirs is another
 
     // On the device, as committed.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// How large may a scene be? So large that every number of a vertex, a triangle or an instance, and three
-/// times the first, has 32 bits.
+/// How large may a scene be? So large that every number of a vertex, a triangle or an instance has 32 bits, with
+/// room to spare for tables that grow.
 #pragma once
 
 #include <cstdint>

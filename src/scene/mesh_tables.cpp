@@ -39,13 +39,23 @@ Buffer<float> grown_of_zeros(Queue& queue, const Buffer<float>& old, std::uint64
     return table;
 }
 
-/// The new capacity of a table that has too little room in one piece. It grows by half at least, so that a scene that is put together mesh
-/// by mesh is not copied for each.
-std::uint64_t enough(const Room& room, std::uint64_t more, const char* what) {
-    const std::uint64_t capacity = room.capacity() + (room.capacity() == 0 ? more : std::max(more, room.capacity() / 2));
-    if (capacity <= std::numeric_limits<std::uint32_t>::max()) return capacity;
-    throw Error(ErrorCategory::OutOfMemory, "there is no room for " + std::to_string(more) + ' ' + what +
-                                                " in one piece in a table of " + std::to_string(room.capacity()));
+/// Calls grow(capacity) for a table that has too little room in one piece. It grows by half, so that a scene that is put together mesh by mesh
+/// is not copied for each; or, where memory does not suffice for that, by what is needed.
+template <typename Grow>
+void enlarge(const Room& room, std::uint64_t more, const char* what, const Grow& grow) {
+    const std::uint64_t least = room.capacity() + more, half_more = room.capacity() + room.capacity() / 2;
+    constexpr std::uint64_t most = std::numeric_limits<std::uint32_t>::max();
+    if (least > most)
+        throw Error(ErrorCategory::OutOfMemory, "there is no room for " + std::to_string(more) + ' ' + what +
+                                                    " in one piece in a table of " + std::to_string(room.capacity()));
+    if (half_more > least && half_more <= most) {
+        try {
+            return grow(half_more);
+        } catch (const Error& error) {
+            if (error.category() != ErrorCategory::OutOfMemory) throw;
+        }
+    }
+    grow(least);
 }
 
 }  // namespace
@@ -57,22 +67,24 @@ void MeshTables::reserve(Queue& queue, std::uint64_t vertices, std::uint64_t tri
 
 void MeshTables::reserve_vertices(Queue& queue, std::uint64_t more) {
     if (const auto range = vertex_room_.take(more)) return vertex_room_.give(*range);
-    const std::uint64_t capacity = enough(vertex_room_, more, "vertices");
-    auto positions = grown(queue, positions_, capacity, "positions");
-    auto normals = normals_.empty() ? normals_ : grown_of_zeros(queue, normals_, capacity, "normals");
-    auto colors = colors_.empty() ? colors_ : grown_of_zeros(queue, colors_, capacity, "colors");
-    vertex_room_.grow(capacity);
-    positions_ = std::move(positions);
-    normals_ = std::move(normals);
-    colors_ = std::move(colors);
+    enlarge(vertex_room_, more, "vertices", [&](std::uint64_t capacity) {
+        auto positions = grown(queue, positions_, capacity, "positions");
+        auto normals = normals_.empty() ? normals_ : grown_of_zeros(queue, normals_, capacity, "normals");
+        auto colors = colors_.empty() ? colors_ : grown_of_zeros(queue, colors_, capacity, "colors");
+        vertex_room_.grow(capacity);
+        positions_ = std::move(positions);
+        normals_ = std::move(normals);
+        colors_ = std::move(colors);
+    });
 }
 
 void MeshTables::reserve_triangles(Queue& queue, std::uint64_t more) {
     if (const auto range = triangle_room_.take(more)) return triangle_room_.give(*range);
-    const std::uint64_t capacity = enough(triangle_room_, more, "triangles");
-    auto indices = grown(queue, indices_, capacity, "indices");
-    triangle_room_.grow(capacity);
-    indices_ = std::move(indices);
+    enlarge(triangle_room_, more, "triangles", [&](std::uint64_t capacity) {
+        auto indices = grown(queue, indices_, capacity, "indices");
+        triangle_room_.grow(capacity);
+        indices_ = std::move(indices);
+    });
 }
 
 MeshPlace MeshTables::place(Queue& queue, const Mesh& mesh) {

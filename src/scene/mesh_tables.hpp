@@ -36,7 +36,7 @@ class MeshTables {
 
     [[nodiscard]] const Buffer<float>& positions() const noexcept { return positions_; }
     [[nodiscard]] const Buffer<std::uint32_t>& indices() const noexcept { return indices_; }
-    /// Empty until a mesh has some; then zeros for meshes that have none, so that one vertex number serves all tables.
+    /// Empty until a mesh has some. One vertex number serves all tables; what they hold for meshes without is not read.
     [[nodiscard]] const Buffer<float>& normals() const noexcept { return normals_; }
     [[nodiscard]] const Buffer<float>& colors() const noexcept { return colors_; }
 

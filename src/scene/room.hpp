@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <iterator>
 #include <map>
+#include <new>
 #include <optional>
 
 namespace setka {
@@ -38,10 +39,14 @@ class Room {
         return std::nullopt;
     }
 
-    void give(const Range& range) {
+    /// Where the host has no memory to remember it, the range is lost.
+    void give(const Range& range) noexcept {
         if (range.size == 0) return;
-        insert(range);
-        taken_ -= range.size;
+        try {
+            insert(range);
+            taken_ -= range.size;
+        } catch (const std::bad_alloc&) {
+        }
     }
 
     void grow(std::uint64_t capacity) {

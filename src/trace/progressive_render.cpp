@@ -29,14 +29,21 @@ constexpr std::size_t most_pending_counts = 64;
 /// A structure built of the scene shares its table; one that was loaded has its own, which must be the same:
 /// hits name triangles within instances, and shading looks them up in the scene.
 void check_instances(Queue& queue, const DeviceScene& scene, const WorldGeometry& geometry) {
-    if (geometry.instance_starts.memory() == scene.instance_starts().memory()) return;
+    if (geometry.instances.memory() == scene.instances().memory()) return;
     const auto mine = queue.download(geometry.instance_starts),
                other = queue.download(scene.instance_starts());
     const auto [a, b] = std::ranges::mismatch(mine, other);
-    if (a == mine.end() && b == other.end()) return;
-    throw Error(ErrorCategory::InvalidArgument,
-                "structure and scene part at instance " + std::to_string(a - mine.begin()) +
-                    ", which starts at another triangle; the structure must be built of the scene");
+    const auto refuse = [](std::ptrdiff_t instance, const char* why) {
+        throw Error(ErrorCategory::InvalidArgument, "structure and scene part at instance " + std::to_string(instance) +
+                                                        ", which " + why +
+                                                        "; the structure must be built of the scene as it is");
+    };
+    if (a != mine.end() || b != other.end()) refuse(a - mine.begin(), "starts at another triangle");
+    const auto built = queue.download(geometry.instances), now = queue.download(scene.instances());
+    const auto [c, d] = std::ranges::mismatch(built, now, [](const ::SetkaInstance& x, const ::SetkaInstance& y) {
+        return std::ranges::equal(x.matrix, y.matrix);
+    });
+    if (c != built.end() || d != now.end()) refuse(c - built.begin(), "is placed elsewhere");
 }
 
 void check_structure(Queue& queue, const DeviceScene& scene, const WorldGeometry& geometry) {
@@ -96,6 +103,7 @@ class ProgressiveRender::Impl {
     void add(std::uint32_t samples) {
         samples = std::min(samples, passes_ - done_);
         if (samples == 0) return;
+        check_same_scene();
         const Timer timer(statistics_.wall_ms);
         RayCounts counts;
         const auto work = [&](std::uint32_t first, std::uint32_t count) {
@@ -146,7 +154,17 @@ class ProgressiveRender::Impl {
         sums_.clear();
         pinhole_ = make_pinhole(camera, options_.width, options_.height, options_.samples_per_axis);
         check_structure(queue_, scene_, structure_.geometry());
+        instances_ = scene_.instances();
         view_.emplace(queue_, scene_, structure_, options_);
+    }
+
+    /// Throws if instances have changed since begin(): hits, materials and shading tables would be of different moments. A
+    /// table that somebody holds is never written, so that one that is still there is what it was.
+    void check_same_scene() const {
+        scene_.check_committed();
+        if (scene_.instances().memory() != instances_.memory())
+            throw Error(ErrorCategory::InvalidArgument,
+                        "scene was edited after the first pass; restart() has to come first, with a structure that was built of it");
     }
 
     /// Calls work(first pixel, pixels) for the whole picture, with at most `size` at a time. What does not
@@ -234,6 +252,7 @@ class ProgressiveRender::Impl {
     std::uint32_t done_ = 0;
     std::uint64_t add_batch_ = batch_rays, store_batch_ = batch_rays;  // pixels, as far as is known to fit
     SkCamera pinhole_{};
+    Buffer<::SetkaInstance> instances_;  ///< of the scene when the picture was begun
     std::optional<ViewPasses> view_;
     SampleSums sums_;
     Buffer<float> thresholds_;

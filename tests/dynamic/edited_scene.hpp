@@ -59,7 +59,7 @@ class EditedScene {
         scene.meshes.emplace_back();
         while (!live_instance_.empty() && !live_instance_[scene.instances.size() - 1]) scene.instances.pop_back();
         for (std::size_t i = 0; i < scene.instances.size(); ++i)
-            if (!live_instance_[i]) scene.instances[i] = {.mesh = empty, .transform = {}};
+            if (!live_instance_[i]) scene.instances[i] = {.mesh = empty, .transform = {}, .mask = 0};
         return scene;
     }
 

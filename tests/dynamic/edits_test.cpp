@@ -26,6 +26,9 @@ void expect_like_fresh(setka::Queue& queue, setka::DeviceScene& edited, const se
     const auto grid = builder->build(queue, edited), other = builder->build(queue, fresh);
     ASSERT_EQ(grid.digest(queue), other.digest(queue));
     EXPECT_EQ(queue.download(grid.geometry().triangles), queue.download(other.geometry().triangles));
+    EXPECT_EQ(edited.common_mask(), fresh.common_mask());
+    EXPECT_TRUE(setka::validate(queue, grid).empty()) << setka::validate(queue, grid).front();
+    EXPECT_EQ(setka::deserialize_grid(queue, setka::serialize(queue, grid)).digest(queue), other.digest(queue));
     const auto rays = support::adversarial_rays(oracle::make_world(scene), support::sized(2000, 50), 3);
     for (const std::uint32_t mask : {0x7fffffffu, 1u, SETKA_MASK_OPAQUE}) {
         const setka::Tracer tracer({.mask = mask});
@@ -140,6 +143,48 @@ TEST_P(Edits, TakeVerticesFromTheDevice) {
     values[7] = 0;
     scene.device().set_vertices(queue, 1, queue.upload(std::span<const float>(values), "moved"));
     EXPECT_NO_THROW((void)setka::make_grid_builder()->build(queue, scene.device()));
+}
+
+TEST_P(Edits, OfScenesWithoutNormalsAndColours) {
+    setka::Queue queue = device().make_queue();
+    setka::Scene plain = dynamic::first_scene();
+    for (setka::Mesh& mesh : plain.meshes) mesh.normals.clear(), mesh.colors.clear();
+    EditedScene scene(queue, plain);
+    setka::Mesh moved = plain.meshes[2];
+    for (setka::Float3& p : moved.positions) p.z += 0.5f;
+    scene.set_vertices(2, moved);
+    std::vector<float> values;
+    for (const setka::Float3& p : moved.positions) values.insert(values.end(), {p.x, p.y, p.z});
+    scene.device().set_vertices(queue, 2, queue.upload(std::span<const float>(values), "moved"));
+    scene.remove_instance(1);
+    scene.device().commit(queue);
+    expect_like_fresh(queue, scene.device(), scene.fresh());
+    EXPECT_THROW(scene.device().set_vertices(queue, 0, scene.device().positions()), setka::Error) << "its own table";
+}
+
+/// Hits are of the structure, shading of the scene: they must be of one moment.
+TEST_P(Edits, EndPicturesThatHaveBegun) {
+    setka::Queue queue = device().make_queue();
+    const setka::Scene first = dynamic::first_scene();
+    EditedScene scene(queue, first);
+    const auto grid = setka::make_grid_builder()->build(queue, scene.device());
+    const setka::Camera camera = setka::frame(first.bounds(), 1);
+    setka::ProgressiveRender render(queue, scene.device(), grid, camera, {.width = 16, .height = 16, .samples_per_axis = 2});
+    render.add_pass();
+    scene.remove_instance(4);
+    EXPECT_THROW(render.add_pass(), setka::Error) << "not committed";
+    scene.device().commit(queue);
+    EXPECT_THROW(render.add_pass(), setka::Error) << "instances have gone";
+    EXPECT_EQ(render.passes_done(), 1u);
+    EXPECT_NO_THROW((void)render.image());
+    scene.add_instance(first.instances[4]);
+    scene.device().commit(queue);
+    EXPECT_THROW(render.add_pass(), setka::Error) << "the scene is as it was, but nobody knows";
+    render.restart(camera);
+    EXPECT_NO_THROW(render.add_pass());
+    scene.set_transform(0, {});
+    scene.device().commit(queue);
+    EXPECT_THROW(render.restart(camera), setka::Error) << "an instance is placed elsewhere than the structure has it";
 }
 
 TEST_P(Edits, LeaveStructuresAsTheyWere) {

@@ -125,6 +125,24 @@ TEST_P(FailingEdits, TakenBackAreWrittenAgain) {
         EXPECT_TRUE(std::ranges::equal(records[i].matrix, host.instances[i].transform.rows)) << i;
 }
 
+/// A vertex table grows by half where it can, and by what is needed where memory is short.
+TEST_P(FailingEdits, GrowTablesByLessWhereMemoryIsShort) {
+    faults::FaultyPair pair = faults::make_faulty_queue(device());
+    Queue& queue = pair.queue;
+    setka::Scene host = row(1);
+    for (int i = 0; i < 10; ++i) host.meshes.push_back(some_mesh(1));
+    DeviceScene roomy(queue, host), tight(queue, host);
+    const std::uint64_t before = roomy.size_bytes();
+    (void)roomy.add_mesh(queue, some_mesh(2));
+    EXPECT_GT(roomy.size_bytes(), before * 5 / 4);
+    pair.faults->fail(Step::Allocate, 1);
+    (void)tight.add_mesh(queue, some_mesh(2));
+    EXPECT_TRUE(pair.faults->has_failed());
+    pair.faults->heal();
+    EXPECT_LT(tight.size_bytes(), roomy.size_bytes());
+    EXPECT_GT(tight.size_bytes(), before);
+}
+
 TEST_P(FailingEdits, SendOnlyWhatChanged) {
     faults::FaultyPair pair = faults::make_faulty_queue(device());
     Queue& queue = pair.queue;

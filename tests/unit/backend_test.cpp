@@ -200,6 +200,20 @@ TEST(PooledMemory, TakesTheSmallestThatIsLargeEnoughAndNotMuchLarger) {
     EXPECT_EQ(allocator.device->driver_allocations(), 4u);
 }
 
+TEST(PooledMemory, KeepsTheBudgetWithWhatIsLargerThanAskedFor) {
+    Allocator allocator;  // 4096 bytes
+    {
+        const auto a = allocator.allocate(2048), b = allocator.allocate(2048);
+    }
+    const auto first = allocator.allocate(1792);  // of 2048
+    EXPECT_EQ(allocator.made, 2);
+    EXPECT_EQ(allocator.device->slack_bytes(), 256u);
+    const auto second = allocator.allocate(2000);
+    const auto third = allocator.allocate(256);  // 4048 are counted, 4352 would be held with what is cached
+    EXPECT_EQ(allocator.pool->cached_bytes(), 0u);
+    EXPECT_LE(allocator.device->in_use_bytes(), 4096u);
+}
+
 TEST(PooledMemory, CountsNothingThatFailed) {
     Allocator allocator;
     const auto failing = [](std::uint64_t) -> Handle { throw std::bad_alloc(); };
