@@ -30,6 +30,16 @@ SK_FUNCTION sk_fN sk_positive_zero_f(sk_fN a) {
 }
 SK_FUNCTION sk_iN sk_finite_f(sk_fN a) { return (sk_lanes_as_int(a) & 0x7f800000) != sk_same_i(0x7f800000); }
 
+/** Bit k: the mask is set in lane k. */
+SK_FUNCTION sk_u32 sk_lane_bits(sk_iN mask) {
+    return (sk_u32)sk_lanes_or(mask & sk_make_i(1, 2, 4, 8, 16, 32, 64, 128));
+}
+
+/** The number of the lowest bit of each lane that has one. */
+SK_FUNCTION sk_iN sk_lowest_bits(sk_iN bits) {
+    return (sk_lanes_as_int(sk_lanes_to_float(bits & -bits)) >> 23 & 0xff) - 127; /* -2^31 too, but for its sign */
+}
+
 /** True if the mask is set in any lane. */
 SK_FUNCTION int sk_any_lane(sk_iN mask) { return sk_lanes_or(mask) != 0; }
 

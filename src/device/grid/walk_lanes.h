@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /**
  * What do SK_WIDTH rays hit in the grid, where one work-item has vector registers for all of them? The walk
- * of walk.h, with a ray in each lane, in a cell and at a list of its own. Lanes that stand at a list wait
- * until all do; then each tests the next triangle of its list until all are through. Every ray and triangle
+ * of walk.h, with a ray in each lane and in a cell of its own. All lanes make a step; then the lists that they
+ * have come to are tested, one after the other, each triangle for all lanes at once. Every ray and triangle
  * sees the operations of ray.h and triangle.h, so that the hits are the same.
  */
 #ifndef SETKA_DEVICE_GRID_WALK_LANES_H
@@ -19,7 +19,7 @@ typedef struct sk_axis_lanes {
 
 typedef struct sk_place_lanes {
     sk_axis_lanes x, y, z;
-    sk_iN cube; /* the width in cells less one of the cube to leave next: 0, 3 or 15 */
+    sk_iN cube; /* the width in cells less one of the cube to leave next: 0, 1, 3 or 15 */
 } sk_place_lanes;
 
 /** sk_cell, also of NaN. */
@@ -95,22 +95,30 @@ SK_FUNCTION sk_found_lanes sk_find_blocks(SetkaGridHeader grid, sk_grid_tables t
     return r;
 }
 
-/** The mask of lanes whose cell has a list; finds how large a cube the others may leave. */
-SK_FUNCTION sk_iN sk_look_lanes(SetkaGridHeader grid, sk_grid_tables tables, sk_place_lanes* at) {
+/** Which lanes' cells have a list, and where it is. */
+typedef struct sk_listed_lanes {
+    sk_iN some; /* mask */
+    sk_found_lanes in;
+} sk_listed_lanes;
+
+/** The bits of a block's word for the 2 x 2 x 2 cells from bit 0 on. */
+#define SK_EIGHT_CELLS 0x00330033
+
+/** Looks for lists, and how large a cube the lanes may leave that have none. */
+SK_FUNCTION sk_listed_lanes sk_look_lanes(SetkaGridHeader grid, sk_grid_tables tables, sk_place_lanes* at) {
     const sk_iN zero = sk_same_i(0);
     const sk_iN x = at->x.index ^ at->x.flip, y = at->y.index ^ at->y.flip, z = at->z.index ^ at->z.flip;
-    const sk_found_lanes in = sk_find_blocks(grid, tables, x, y, z);
-    const sk_iN empty = (in.mask_low | in.mask_high) == zero;
-    const sk_iN word = sk_select_i(in.bit > sk_same_i(31), in.mask_high, in.mask_low);
-    at->cube = empty & 3;
-    if (sk_any_lane(empty)) {
-        const sk_dims dims = sk_block_dims(sk_block_dims(sk_cell_dims(grid)));
-        const sk_iN group = ((z >> 4) * (sk_i32)dims.y + (y >> 4)) * (sk_i32)dims.x + (x >> 4);
-        const sk_iN blocks =
-            sk_gather_i(tables.groups, group, 2u) | sk_gather_i(tables.groups + 1, group, 2u);
-        at->cube = at->cube | ((blocks == zero) & 15);
-    }
-    return (word >> (in.bit & 31) & 1) != zero;
+    sk_listed_lanes r;
+    r.in = sk_find_blocks(grid, tables, x, y, z);
+    const sk_iN word = sk_select_i(r.in.bit > sk_same_i(31), r.in.mask_high, r.in.mask_low);
+    const sk_iN eight = word >> (r.in.bit & (2 + 8)) & SK_EIGHT_CELLS; /* those around the cell */
+    const sk_iN empty = (r.in.mask_low | r.in.mask_high) == zero;
+    const sk_dims dims = sk_block_dims(sk_block_dims(sk_cell_dims(grid)));
+    const sk_iN group = ((z >> 4) * (sk_i32)dims.y + (y >> 4)) * (sk_i32)dims.x + (x >> 4);
+    const sk_iN blocks = sk_gather_i(tables.groups, group, 2u) | sk_gather_i(tables.groups + 1, group, 2u);
+    at->cube = ((eight == zero) & 1) | (empty & 3) | ((blocks == zero) & 15);
+    r.some = (word >> (r.in.bit & 31) & 1) != zero;
+    return r;
 }
 
 /** How many bits are set in each lane. */
@@ -120,25 +128,11 @@ SK_FUNCTION sk_iN sk_count_bits(sk_iN a) {
     return (((nibbles + (nibbles >> 4)) & 0x0f0f0f0f) * 0x01010101) >> 24;
 }
 
-/** Triangles references[here .. end) for each lane. */
-typedef struct sk_lists {
-    sk_iN here, end;
-} sk_lists;
-
-/** The lists of the lanes that have one, else empty ones. */
-SK_FUNCTION sk_lists sk_open_lists(SetkaGridHeader grid, sk_grid_tables tables, sk_place_lanes at,
-                                   sk_iN listed) {
-    const sk_found_lanes in =
-        sk_find_blocks(grid, tables, at.x.index ^ at.x.flip, at.y.index ^ at.y.flip, at.z.index ^ at.z.flip);
+/** The numbers of the lists' records. */
+SK_FUNCTION sk_iN sk_records_of(sk_found_lanes in) {
     const sk_iN below = (sk_same_i(1) << (in.bit & 31)) - 1, in_high = in.bit > sk_same_i(31);
-    const sk_iN rank =
-        sk_count_bits(in.mask_low & (below | in_high)) + sk_count_bits(in.mask_high & below & in_high);
-    const sk_iN record = listed & (in.first + rank);
-    SK_GLOBAL const sk_u32* records = (SK_GLOBAL const sk_u32*)tables.cells;
-    sk_lists r;
-    r.here = listed & sk_gather_i(records, record, 2u);
-    r.end = r.here + (listed & sk_gather_i(records + 1, record, 2u));
-    return r;
+    return in.first + sk_count_bits(in.mask_low & (below | in_high)) +
+           sk_count_bits(in.mask_high & below & in_high);
 }
 
 /** sk_limit in lanes. */
@@ -159,44 +153,25 @@ SK_FUNCTION sk_span_lanes sk_limit_lanes(sk_ray_lanes ray) {
 /** SK_WIDTH rays on their way. */
 typedef struct sk_flight {
     sk_ray_lanes ray;
+    sk_vec3N o; /* the ray's, along its kx, ky and kz */
+    sk_iN kz;
     sk_place_lanes at;
     sk_best_lanes best;
-    sk_fN w1, last; /* the end of the ray; nothing beyond `last` is of interest */
-    sk_iN walking;  /* mask: has not come to its end */
-    sk_iN listed;   /* mask: stands at a cell with a list that is not tested */
     sk_iN skip;
 } sk_flight;
 
-SK_FUNCTION sk_flight sk_take_off(SetkaGridHeader grid, sk_grid_tables tables, sk_ray_lanes ray, sk_iN skip) {
-    const sk_span_lanes span = sk_limit_lanes(ray);
+SK_FUNCTION sk_flight sk_take_off(SetkaGridHeader grid, sk_ray_lanes ray, sk_span_lanes span, sk_iN skip) {
     sk_flight r;
     r.ray = ray;
+    r.o = sk_turn_axes(ray, ray.o);
+    r.kz = sk_select_i(ray.along_x, sk_same_i(0), sk_select_i(ray.along_y, sk_same_i(1), sk_same_i(2)));
     r.at.x = sk_make_axis_lanes(grid, 0u, ray.o.x, ray.d.x, ray.inverse.x, span.w0);
     r.at.y = sk_make_axis_lanes(grid, 1u, ray.o.y, ray.d.y, ray.inverse.y, span.w0);
     r.at.z = sk_make_axis_lanes(grid, 2u, ray.o.z, ray.d.z, ray.inverse.z, span.w0);
     r.at.cube = sk_same_i(0);
     r.best = sk_no_hit_lanes();
-    r.w1 = span.w1;
-    r.last = span.w1;
-    r.walking = span.meets;
-    r.listed = sk_same_i(0);
     r.skip = skip;
-    if (sk_any_lane(r.walking)) r.listed = r.walking & sk_look_lanes(grid, tables, &r.at);
     return r;
-}
-
-/** Moves each lane to a cell with a list, or to its end. */
-SK_FUNCTION void sk_step_lanes(SetkaGridHeader grid, sk_grid_tables tables, sk_flight* f) {
-    sk_iN moving = f->walking & ~f->listed;
-    while (sk_any_lane(moving)) {
-        const sk_iN goes = sk_leave_lanes(&f->at, moving, f->last);
-        const sk_iN cube = f->at.cube;
-        const sk_iN found = goes & sk_look_lanes(grid, tables, &f->at);
-        f->at.cube = sk_select_i(goes, f->at.cube, cube);
-        f->walking = f->walking & (goes | ~moving);
-        f->listed = f->listed | found;
-        moving = goes & ~found;
-    }
 }
 
 /** The best of `best` and the hits of the triangles `number`; none where that is SETKA_NO_HIT. */
@@ -223,30 +198,57 @@ SK_FUNCTION sk_best_lanes sk_test_candidates(sk_grid_tables tables, sk_trace_par
     return r;
 }
 
-/**
- * Tests the lists of all lanes, the next triangle of each at a time. The accurate test is long and few
- * triangles come to it, so a lane's candidate waits until the lists are through, or the lane has another.
- */
-SK_FUNCTION sk_best_lanes sk_test_lists(sk_grid_tables tables, sk_trace_params params, sk_ray_lanes ray,
-                                        sk_iN skip, sk_lists lists, sk_best_lanes best) {
-    const sk_iN none = sk_same_i((sk_i32)SETKA_NO_HIT);
-    sk_best_lanes r = best;
-    sk_iN candidate = none, here = lists.here, testing = here != lists.end;
-    do {
-        sk_iN next = none;
-        while (sk_any_lane(testing) && !sk_any_lane(next != none)) {
-            const sk_iN number = sk_gather_i(tables.references, here & testing, 1u);
-            const sk_iN passes = testing & (number != skip) &
-                                 sk_may_pass_lanes(sk_view_triangle_lanes(ray, tables.triangles, number));
-            next = sk_select_i(passes & (candidate != none), number, none);
-            candidate = sk_select_i(passes & (candidate == none), number, candidate);
-            here = here - testing; /* a mask is -1 */
-            testing = here != lists.end;
-        }
-        if (sk_any_lane(candidate != none)) r = sk_test_candidates(tables, params, ray, candidate, r);
-        candidate = next;
-    } while (sk_any_lane(testing) || sk_any_lane(candidate != none));
+/** Bit k of a lane: its ray may hit triangle references[k]; of `count` triangles, up to 32. */
+SK_FUNCTION sk_iN sk_test_one_list(sk_grid_tables tables, sk_ray_lanes ray, sk_viewpoint_lanes from,
+                                   SK_GLOBAL const sk_u32* references, sk_u32 count) {
+    sk_iN r = sk_same_i(0);
+    for (sk_u32 k = 0u; k < count; ++k) {
+        SK_GLOBAL const float* vertices = tables.triangles + (size_t)references[k] * 9u;
+        r = r | (sk_may_pass_lanes(sk_view_one_triangle(ray, from, vertices)) & (sk_i32)(1u << k));
+    }
     return r;
+}
+
+/**
+ * Tests the lists of the lanes in `listed`. A turn takes the first lane that waits and tests up to SK_ROUND
+ * triangles of its list for it and all lanes with the same list and axis. The accurate test is long and few
+ * triangles come to it, so candidates wait until the turns are through, or a list has more triangles.
+ */
+SK_FUNCTION sk_best_lanes sk_test_lists(sk_grid_tables tables, sk_trace_params params, sk_flight f, sk_iN listed,
+                                        sk_iN record) {
+    sk_iN candidates = sk_same_i(0), offset = sk_same_i(0);
+    sk_u32 waiting = sk_lane_bits(listed), first = 0u;
+    sk_i32 axes[SK_WIDTH], records[SK_WIDTH];
+    sk_store_i(f.kz, axes);
+    sk_store_i(record, records);
+    do {
+        const sk_u32 lane = sk_popcount((waiting - 1u) & ~waiting);
+        const sk_iN members = listed & (record == records[lane]) & (f.kz == axes[lane]);
+        const sk_cell_list list = tables.cells[(sk_u32)records[lane]];
+        const sk_u32 start = list.offset + first, left = list.count - first;
+        sk_viewpoint_lanes from;
+        from.o = f.o;
+        from.kz = (sk_u32)axes[lane];
+        from.kx = from.kz == 2u ? 0u : from.kz + 1u;
+        from.ky = from.kx == 2u ? 0u : from.kx + 1u;
+        candidates = candidates | (members & sk_test_one_list(tables, f.ray, from, tables.references + start,
+                                                              sk_min_u32(left, SK_ROUND)));
+        offset = sk_select_i(members, sk_same_i((sk_i32)start), offset);
+        first = left > SK_ROUND ? first + SK_ROUND : 0u;
+        if (first == 0u) waiting &= ~sk_lane_bits(members);
+        if (first != 0u || waiting == 0u) {
+            while (sk_any_lane(candidates)) {
+                const sk_iN some = candidates != sk_same_i(0);
+                const sk_iN number =
+                    sk_gather_i(tables.references, (offset + sk_lowest_bits(candidates)) & some, 1u);
+                f.best = sk_test_candidates(
+                    tables, params, f.ray,
+                    sk_select_i(some & (number != f.skip), number, sk_same_i((sk_i32)SETKA_NO_HIT)), f.best);
+                candidates = candidates & (candidates - 1);
+            }
+        }
+    } while (waiting != 0u);
+    return f.best;
 }
 
 /**
@@ -255,17 +257,20 @@ SK_FUNCTION sk_best_lanes sk_test_lists(sk_grid_tables tables, sk_trace_params p
  */
 SK_FUNCTION sk_best_lanes sk_walk_grid_lanes(SetkaGridHeader grid, sk_trace_params params, sk_ray_lanes ray,
                                              sk_grid_tables tables, sk_iN skip, const int any) {
-    sk_flight f = sk_take_off(grid, tables, ray, skip);
-    while (sk_any_lane(f.walking)) {
-        sk_step_lanes(grid, tables, &f);
-        if (sk_any_lane(f.listed)) {
-            const sk_lists lists = sk_open_lists(grid, tables, f.at, f.listed);
-            f.best = sk_test_lists(tables, params, f.ray, f.skip, lists, f.best);
-            f.listed = sk_same_i(0);
+    const sk_span_lanes span = sk_limit_lanes(ray);
+    sk_fN last = span.w1; /* nothing beyond this parameter is of interest */
+    sk_iN walking = span.meets;
+    sk_flight f = sk_take_off(grid, ray, span, skip);
+    while (sk_any_lane(walking)) {
+        const sk_listed_lanes lists = sk_look_lanes(grid, tables, &f.at);
+        const sk_iN listed = walking & lists.some;
+        if (sk_any_lane(listed)) {
+            f.best = sk_test_lists(tables, params, f, listed, sk_records_of(lists.in));
             const sk_iN found = f.best.triangle != sk_same_i((sk_i32)SETKA_NO_HIT);
-            f.last = sk_select_f(found, sk_min_f(f.best.w, f.w1), f.w1);
-            if (any) f.walking = f.walking & ~found;
+            last = sk_select_f(found, sk_min_f(f.best.w, span.w1), span.w1);
+            if (any) walking = walking & ~found;
         }
+        walking = sk_leave_lanes(&f.at, walking, last);
     }
     return f.best;
 }

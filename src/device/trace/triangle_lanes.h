@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /**
- * Does each of SK_WIDTH rays hit its triangle, and where? The test of triangle.h, a ray and a triangle of its
- * own in each lane, by the same operations in the same order.
+ * Does each of SK_WIDTH rays hit its triangle, and where? The test of triangle.h, a ray in each lane, by the
+ * same operations in the same order. The plain test has one triangle for all of them, as loading one takes as
+ * long as testing it; the accurate one a triangle of its own in each lane.
  */
 #ifndef SETKA_DEVICE_TRACE_TRIANGLE_LANES_H
 #define SETKA_DEVICE_TRACE_TRIANGLE_LANES_H
@@ -65,14 +66,8 @@ SK_FUNCTION sk_iN sk_side_lanes(sk_fN edge, sk_fN xa, sk_fN ya, sk_fN xb, sk_fN 
                        sk_select_i(ya != yb, sk_order_lanes(yb, ya), sk_order_lanes(xa, xb)));
 }
 
-/** Triangles `number` of the table as their rays see them. */
-SK_FUNCTION sk_view_lanes sk_view_triangle_lanes(sk_ray_lanes ray, SK_GLOBAL const float* triangles,
-                                                 sk_iN number) {
-    const sk_columns p = sk_gather4(triangles, number, 9u), q = sk_gather4(triangles + 4, number, 9u);
-    const sk_fN last = sk_gather_f(triangles + 8, number, 9u);
-    const sk_vec3N v0 = sk_turn_axes(ray, sk_make3_f(p.a - ray.o.x, p.b - ray.o.y, p.c - ray.o.z));
-    const sk_vec3N v1 = sk_turn_axes(ray, sk_make3_f(p.d - ray.o.x, q.a - ray.o.y, q.b - ray.o.z));
-    const sk_vec3N v2 = sk_turn_axes(ray, sk_make3_f(q.c - ray.o.x, q.d - ray.o.y, last - ray.o.z));
+/** The view of a triangle whose vertices, seen from the ray's origin, have these components along kx, ky and kz. */
+SK_FUNCTION sk_view_lanes sk_shear_lanes(sk_ray_lanes ray, sk_vec3N v0, sk_vec3N v1, sk_vec3N v2) {
     sk_view_lanes r;
     r.a0 = v0.z;
     r.a1 = v1.z;
@@ -86,10 +81,39 @@ SK_FUNCTION sk_view_lanes sk_view_triangle_lanes(sk_ray_lanes ray, SK_GLOBAL con
     return r;
 }
 
+/** Triangles `number` of the table as their rays see them. */
+SK_FUNCTION sk_view_lanes sk_view_triangle_lanes(sk_ray_lanes ray, SK_GLOBAL const float* triangles,
+                                                 sk_iN number) {
+    const sk_columns p = sk_gather4(triangles, number, 9u), q = sk_gather4(triangles + 4, number, 9u);
+    const sk_fN last = sk_gather_f(triangles + 8, number, 9u);
+    return sk_shear_lanes(ray, sk_turn_axes(ray, sk_make3_f(p.a - ray.o.x, p.b - ray.o.y, p.c - ray.o.z)),
+                          sk_turn_axes(ray, sk_make3_f(p.d - ray.o.x, q.a - ray.o.y, q.b - ray.o.z)),
+                          sk_turn_axes(ray, sk_make3_f(q.c - ray.o.x, q.d - ray.o.y, last - ray.o.z)));
+}
+
+/** Axes of rays that go along the same one, and their origins along them. */
+typedef struct sk_viewpoint_lanes {
+    sk_vec3N o;
+    sk_u32 kx, ky, kz;
+} sk_viewpoint_lanes;
+
+/** A vertex as all rays see it. */
+SK_FUNCTION sk_vec3N sk_view_vertex(sk_viewpoint_lanes from, SK_GLOBAL const float* vertex) {
+    return sk_make3_f(vertex[from.kx] - from.o.x, vertex[from.ky] - from.o.y, vertex[from.kz] - from.o.z);
+}
+
+/** One triangle as all rays see it; of use for those that go along `from`'s axis. */
+SK_FUNCTION sk_view_lanes sk_view_one_triangle(sk_ray_lanes ray, sk_viewpoint_lanes from,
+                                               SK_GLOBAL const float* vertices) {
+    return sk_shear_lanes(ray, sk_view_vertex(from, vertices), sk_view_vertex(from, vertices + 3),
+                          sk_view_vertex(from, vertices + 6));
+}
+
+/** sk_may_pass in a few operations less: set also where U, V or W is NaN, which the accurate test then refuses. */
 SK_FUNCTION sk_iN sk_may_pass_lanes(sk_view_lanes p) {
     const sk_fN u = p.x2 * p.y1 - p.y2 * p.x1, v = p.x0 * p.y2 - p.y0 * p.x2, w = p.x1 * p.y0 - p.y1 * p.x0;
     const sk_fN zero = sk_same_f(0.0f);
-    return ~(((u < zero) | (v < zero) | (w < zero)) & ((u > zero) | (v > zero) | (w > zero)));
+    return ~((sk_min_f(sk_min_f(u, v), w) < zero) & (sk_max_f(sk_max_f(u, v), w) > zero));
 }
 
 /** The parameter of the hit of each view, and whether it is one: that it is the best is not asked here. */
