@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <thread>
 #include <vector>
 
@@ -23,26 +24,32 @@ TEST(HostDevice, ComputesAsEveryDevice) {
     EXPECT_EQ(setka::run_probe(queue).differences, std::vector<std::string>());
 }
 
-/// A work-item traces eight rays: the last may have fewer.
+/// A work-item traces eight rays: the last may have fewer. Cells of the coarse grid list more than the 32 triangles of a round.
 TEST(HostDevice, TracesBatchesOfEverySize) {
     setka::Queue queue = fuzz::host_device().make_queue();
     const setka::Scene scene = support::ball(300);
     const setka::DeviceScene device_scene(queue, scene);
-    const setka::Grid grid = setka::make_grid_builder()->build(queue, device_scene);
+    setka::GridOptions coarse;
+    coarse.density = 0.02f;
+    const std::array grids{setka::make_grid_builder()->build(queue, device_scene),
+                           setka::make_grid_builder(coarse)->build(queue, device_scene)};
     const setka::BruteForce brute_force = setka::BruteForce::build(queue, device_scene);
     const auto rays = support::adversarial_rays(oracle::make_world(scene), 40, 11);
     const setka::Tracer tracer;
     for (std::size_t n = 0; n <= rays.size(); ++n) {
         const std::span batch(rays.data(), n);
         const auto right = tracer.closest_hit(queue, brute_force, batch);
-        EXPECT_TRUE(support::same_hits(batch, right, tracer.closest_hit(queue, grid, batch))) << n << " rays";
-        EXPECT_EQ(tracer.any_hit(queue, grid, batch), tracer.any_hit(queue, brute_force, batch)) << n << " rays";
+        const auto occluded = tracer.any_hit(queue, brute_force, batch);
         // Past what was hit, each ray another triangle.
         std::vector<setka::Primitive> skip;
         for (const setka::Hit& hit : right) skip.push_back({hit.primitive, hit.instance});
-        EXPECT_TRUE(support::same_hits(batch, tracer.closest_hit(queue, brute_force, batch, skip),
-                                       tracer.closest_hit(queue, grid, batch, skip)))
-            << n << " rays";
+        const auto behind = tracer.closest_hit(queue, brute_force, batch, skip);
+        for (const setka::Grid& grid : grids) {
+            EXPECT_TRUE(support::same_hits(batch, right, tracer.closest_hit(queue, grid, batch))) << n << " rays";
+            EXPECT_EQ(tracer.any_hit(queue, grid, batch), occluded) << n << " rays";
+            EXPECT_TRUE(support::same_hits(batch, behind, tracer.closest_hit(queue, grid, batch, skip)))
+                << n << " rays";
+        }
     }
 }
 
