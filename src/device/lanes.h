@@ -37,7 +37,8 @@ SK_FUNCTION sk_u32 sk_lane_bits(sk_iN mask) {
 
 /** The number of the lowest bit of each lane that has one. */
 SK_FUNCTION sk_iN sk_lowest_bits(sk_iN bits) {
-    return (sk_lanes_as_int(sk_lanes_to_float(bits & -bits)) >> 23 & 0xff) - 127; /* -2^31 too, but for its sign */
+    return (sk_lanes_as_int(sk_lanes_to_float(bits & -bits)) >> 23 & 0xff) -
+           127; /* -2^31 too, but for its sign */
 }
 
 /** True if the mask is set in any lane. */

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /**
  * What do SK_WIDTH rays hit in the grid, where one work-item has vector registers for all of them? The walk
- * of walk.h, with a ray in each lane and in a cell of its own. All lanes make a step; then the lists that they
- * have come to are tested, one after the other, each triangle for all lanes at once. Every ray and triangle
- * sees the operations of ray.h and triangle.h, so that the hits are the same.
+ * of walk.h, with a ray in each lane and in a cell of its own. All lanes make a step; then the lists that
+ * they have come to are tested, one after the other, each triangle for all lanes at once. Every ray and
+ * triangle sees the operations of ray.h and triangle.h, so that the hits are the same.
  */
 #ifndef SETKA_DEVICE_GRID_WALK_LANES_H
 #define SETKA_DEVICE_GRID_WALK_LANES_H
@@ -214,8 +214,8 @@ SK_FUNCTION sk_iN sk_test_one_list(sk_grid_tables tables, sk_ray_lanes ray, sk_v
  * triangles of its list for it and all lanes with the same list and axis. The accurate test is long and few
  * triangles come to it, so candidates wait until the turns are through, or a list has more triangles.
  */
-SK_FUNCTION sk_best_lanes sk_test_lists(sk_grid_tables tables, sk_trace_params params, sk_flight f, sk_iN listed,
-                                        sk_iN record) {
+SK_FUNCTION sk_best_lanes sk_test_lists(sk_grid_tables tables, sk_trace_params params, sk_flight f,
+                                        sk_iN listed, sk_iN record) {
     sk_iN candidates = sk_same_i(0), offset = sk_same_i(0);
     sk_u32 waiting = sk_lane_bits(listed), first = 0u;
     sk_i32 axes[SK_WIDTH], records[SK_WIDTH];

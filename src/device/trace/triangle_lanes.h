@@ -66,7 +66,8 @@ SK_FUNCTION sk_iN sk_side_lanes(sk_fN edge, sk_fN xa, sk_fN ya, sk_fN xb, sk_fN 
                        sk_select_i(ya != yb, sk_order_lanes(yb, ya), sk_order_lanes(xa, xb)));
 }
 
-/** The view of a triangle whose vertices, seen from the ray's origin, have these components along kx, ky and kz. */
+/** The view of a triangle whose vertices, seen from the ray's origin, have these components along kx, ky and
+ * kz. */
 SK_FUNCTION sk_view_lanes sk_shear_lanes(sk_ray_lanes ray, sk_vec3N v0, sk_vec3N v1, sk_vec3N v2) {
     sk_view_lanes r;
     r.a0 = v0.z;
@@ -109,7 +110,8 @@ SK_FUNCTION sk_view_lanes sk_view_one_triangle(sk_ray_lanes ray, sk_viewpoint_la
                           sk_view_vertex(from, vertices + 6));
 }
 
-/** sk_may_pass in a few operations less: set also where U, V or W is NaN, which the accurate test then refuses. */
+/** sk_may_pass in a few operations less: set also where U, V or W is NaN, which the accurate test then
+ * refuses. */
 SK_FUNCTION sk_iN sk_may_pass_lanes(sk_view_lanes p) {
     const sk_fN u = p.x2 * p.y1 - p.y2 * p.x1, v = p.x0 * p.y2 - p.y0 * p.x2, w = p.x1 * p.y0 - p.y1 * p.x0;
     const sk_fN zero = sk_same_f(0.0f);
