@@ -55,7 +55,7 @@ MovingScene::MovingScene(Target& target, const SceneCase& name, const LoadedScen
       scene_(queue_, host_),
       camera_(loaded.view.camera),
       builder_(make_grid_builder({.density = options.densities.front()})),
-      renderer_({.width = options.picture_width, .height = options.picture_height, .max_depth = 0}) {
+      renderer_({.width = options.picture_width, .height = options.picture_height, .max_depth = 0, .pixels = Pixels::Srgb}) {
     for (const Motion motion : {Motion::Instances, Motion::Vertices})
         check(motion, name.to_string() + " on " + target.name());
 }
