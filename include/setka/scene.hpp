@@ -119,6 +119,26 @@ struct Scene {
 /// Appends `source` to `target`: meshes, instances, materials and lights with indices moved; the camera if there is none.
 void append(Scene& target, Scene source);
 
+/// What moved in a scene: new placements, new vertices, a new camera. Triangles, materials and lights stay.
+struct SceneUpdate {
+    struct Placement {
+        std::uint32_t instance = 0;
+        Matrix34 transform;
+    };
+    struct Vertices {
+        std::uint32_t mesh = 0;
+        std::vector<Float3> positions;  ///< as many as the mesh has, in its object space
+        std::vector<Float3> normals;    ///< as many as the mesh has, or none if it has none
+    };
+    std::vector<Placement> placements;
+    std::vector<Vertices> vertices;
+    std::optional<Camera> camera;
+};
+
+/// Moves the scene. Throws InvalidArgument, and changes nothing, for an instance or mesh that does not exist, other numbers of
+/// positions or normals than the mesh has, a number that is not finite, or a camera that cannot be used.
+void apply(Scene& scene, const SceneUpdate& update);
+
 /// A camera that sees the whole box from direction (0.6, 0.35, 1) of its centre, for an image of this width over height.
 [[nodiscard]] Camera frame(const Bounds& bounds, float aspect, float vertical_fov_degrees = 50);
 /// A camera inside the box, below its middle, looking along its longer horizontal side.
