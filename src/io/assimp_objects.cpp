@@ -37,25 +37,6 @@ aiVector3D unit(const aiVector3D& v) {
                                                : aiVector3D();
 }
 
-/// A camera at the origin of its node that looks along -z, as glTF has it. aiCamera repeats the node's
-/// translation in its own position, so that is left alone.
-std::optional<Camera> place(const aiMatrix4x4& world, double vertical_fov) {
-    const aiMatrix3x3 linear(world);
-    const aiVector3D eye = world * aiVector3D(0, 0, 0);
-    const aiVector3D view = unit(linear * aiVector3D(0, 0, -1)), up = unit(linear * aiVector3D(0, 1, 0));
-    Camera camera;
-    camera.eye = to_float3(eye);
-    // As far away as the origin: one unit would be rounded away beside large coordinates.
-    const float distance = std::max(1.0f, std::sqrt(eye.SquareLength()));
-    camera.target = to_float3(eye + view * distance);
-    camera.up = to_float3(up);
-    camera.vertical_fov_degrees = static_cast<float>(vertical_fov * 180 / exact::pi);
-    const bool usable = is_usable(eye) && view.SquareLength() > 0 && (view ^ up).SquareLength() > 1e-8f &&
-                        camera.target != camera.eye && camera.vertical_fov_degrees > 0 &&
-                        camera.vertical_fov_degrees < 180;
-    return usable ? std::optional(camera) : std::nullopt;
-}
-
 double brightness(const Float3& intensity) { return std::max({intensity.x, intensity.y, intensity.z}); }
 
 /// The light that reaches the middle of the scene.
@@ -77,6 +58,24 @@ double total_brightness(const Scene& scene) {
 
 }  // namespace
 
+/// aiCamera repeats the node's translation in its own position, so that is left alone.
+std::optional<Camera> place_camera(const aiMatrix4x4& world, double vertical_fov) {
+    const aiMatrix3x3 linear(world);
+    const aiVector3D eye = world * aiVector3D(0, 0, 0);
+    const aiVector3D view = unit(linear * aiVector3D(0, 0, -1)), up = unit(linear * aiVector3D(0, 1, 0));
+    Camera camera;
+    camera.eye = to_float3(eye);
+    // As far away as the origin: one unit would be rounded away beside large coordinates.
+    const float distance = std::max(1.0f, std::sqrt(eye.SquareLength()));
+    camera.target = to_float3(eye + view * distance);
+    camera.up = to_float3(up);
+    camera.vertical_fov_degrees = static_cast<float>(vertical_fov * 180 / exact::pi);
+    const bool usable = is_usable(eye) && view.SquareLength() > 0 && (view ^ up).SquareLength() > 1e-8f &&
+                        camera.target != camera.eye && camera.vertical_fov_degrees > 0 &&
+                        camera.vertical_fov_degrees < 180;
+    return usable ? std::optional(camera) : std::nullopt;
+}
+
 Matrix34 take_transform(const std::filesystem::path& file, const aiMatrix4x4& matrix, const aiNode& node) {
     const auto fail = [&](const char* reason) {
         fail_read(file, "the transform of node " + in_quotes(node.mName.C_Str(), 60) + reason);
@@ -95,7 +94,7 @@ Matrix34 take_transform(const std::filesystem::path& file, const aiMatrix4x4& ma
 
 std::optional<Camera> take_camera(const aiScene& source, std::span<const double> vertical_fovs) {
     for (unsigned i = 0; i < source.mNumCameras && i < vertical_fovs.size(); ++i)
-        if (const auto placed = place(world_transform(source, source.mCameras[i]->mName), vertical_fovs[i]))
+        if (const auto placed = place_camera(world_transform(source, source.mCameras[i]->mName), vertical_fovs[i]))
             return placed;
     return std::nullopt;
 }

@@ -19,6 +19,9 @@ namespace setka::io::detail {
 [[nodiscard]] Matrix34 take_transform(const std::filesystem::path& file, const aiMatrix4x4& matrix,
                                       const aiNode& node);
 
+/// A camera at the origin of its node that looks along -z, as glTF has it; nothing if that is no camera.
+[[nodiscard]] std::optional<Camera> place_camera(const aiMatrix4x4& world, double vertical_fov);
+
 /// The first perspective camera of a glTF scene, placed by its node; nothing if none can be used.
 /// `vertical_fovs` holds the angle of each camera in radians: assimp 5.2 keeps it only as angle times aspect.
 [[nodiscard]] std::optional<Camera> take_camera(const aiScene& source, std::span<const double> vertical_fovs);

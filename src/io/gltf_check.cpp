@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 /// Can assimp be trusted with this glTF file? assimp 5.2 follows node cycles without end, drops triangles
 /// with an index out of range without a word, and assumes JSON types. So the JSON is copied through a schema
-/// of what setka reads (animations, morph targets and unknown extensions stay behind), and every
-/// reference and range in the copy is checked.
+/// of what setka reads (unknown extensions stay behind; animations and morph targets never reach assimp), and
+/// every reference and range in the copy is checked.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "io/file.hpp"
+#include "io/gltf_container.hpp"
 #include "io/gltf_schema.hpp"
 #include "io/readers.hpp"
 
@@ -21,72 +22,12 @@ constexpr std::size_t max_node_depth = 256;
 /// Of all primitives that a skin moves; assimp takes a kilobyte for each.
 constexpr std::size_t max_joints = std::size_t(1) << 20;
 
-std::uint32_t little_endian(const std::string& bytes, std::size_t at) {
-    std::uint32_t value = 0;
-    for (std::size_t i = 4; i-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes.at(at + i));
-    return value;
-}
-
-/// The two chunks of a GLB container, or a text alone.
-struct Container {
-    std::string json;
-    std::optional<std::string> binary;
-    bool is_glb = false;
-};
-
-Container open_container(const std::filesystem::path& file, const std::string& bytes) {
-    if (bytes.compare(0, 4, "glTF") != 0) return {bytes, std::nullopt, false};
-    if (bytes.size() < 20) fail_read(file, "the GLB header is truncated");
-    if (const std::uint32_t version = little_endian(bytes, 4); version != 2)
-        fail_read(file, "GLB version " + std::to_string(version) + "; version 2 is read");
-    const std::uint64_t length = little_endian(bytes, 8);
-    if (length > bytes.size())
-        fail_read(file, "the GLB header promises " + std::to_string(length) + " bytes, but the file has " +
-                            std::to_string(bytes.size()) + ": it is truncated or malformed");
-    Container container;
-    container.is_glb = true;
-    for (std::uint64_t at = 12; at + 8 <= length;) {
-        const std::uint64_t size_bytes = little_endian(bytes, at);
-        const std::uint32_t kind = little_endian(bytes, at + 4);
-        at += 8;
-        if (size_bytes > length - at) fail_read(file, "a GLB chunk reaches past the end of the file");
-        if (kind == 0x4e4f534a && container.json.empty()) container.json = bytes.substr(at, size_bytes);
-        if (kind == 0x004e4942 && !container.binary) container.binary = bytes.substr(at, size_bytes);
-        at += (size_bytes + 3) / 4 * 4;
-    }
-    if (container.json.empty()) fail_read(file, "the GLB file has no JSON chunk");
-    return container;
-}
-
-std::string close_container(const Json& json, const Container& container) {
-    std::string text = json.dump();
-    if (!container.is_glb) return text;
-    text.resize((text.size() + 3) / 4 * 4, ' ');
-    std::string glb = "glTF";
-    const auto append = [&glb](std::uint64_t value) {
-        for (int i = 0; i < 4; ++i) glb += static_cast<char>(value >> (8 * i) & 0xff);
-    };
-    std::string binary = container.binary.value_or(std::string());
-    binary.resize((binary.size() + 3) / 4 * 4, '\0');
-    append(2);
-    append(20 + text.size() + (container.binary ? 8 + binary.size() : 0));
-    append(text.size());
-    append(0x4e4f534a);
-    glb += text;
-    if (container.binary) {
-        append(binary.size());
-        append(0x004e4942);
-        glb += binary;
-    }
-    return glb;
-}
-
 class GltfChecker {
   public:
-    GltfChecker(const std::filesystem::path& file, Json json, const Container& container)
+    GltfChecker(const std::filesystem::path& file, Json json, const GltfContainer& container)
         : file_(file), json_(std::move(json)), container_(container) {}
 
-    [[nodiscard]] CheckedGltf check() {
+    [[nodiscard]] CheckedGltf check(GltfFilePart part) {
         for (std::size_t i = 0; i < size("buffers"); ++i) check_buffer(json_["buffers"][i], i);
         for (std::size_t i = 0; i < size("bufferViews"); ++i) {
             const Json& view = json_["bufferViews"][i];
@@ -109,11 +50,25 @@ class GltfChecker {
         }
         check_nodes();
         for (std::size_t i = 0; i < size("skins"); ++i) check_skin(json_["skins"][i], i);
-        checked.bytes = close_container(json_, container_);
+        if (part == GltfFilePart::Moving) {
+            checked.document = std::make_shared<const GltfDocument>(file_, json_, container_.binary);
+            leave_still_part();
+        }
+        checked.bytes = close_container(json_.dump(), container_);
         return checked;
     }
 
   private:
+    /// Takes away what assimp is not trusted with: it drops steps and tangents without a word.
+    void leave_still_part() {
+        json_.erase("animations");
+        for (std::size_t i = 0; i < size("nodes"); ++i) json_["nodes"][i].erase("weights");
+        for (std::size_t i = 0; i < size("meshes"); ++i) {
+            json_["meshes"][i].erase("weights");
+            for (Json& primitive : json_["meshes"][i]["primitives"]) primitive.erase("targets");
+        }
+    }
+
     [[nodiscard]] std::size_t size(const char* key) const {
         return json_.contains(key) ? json_[key].size() : 0;
     }
@@ -280,7 +235,8 @@ class GltfChecker {
             demand(component == 5126 && accessor["type"] == "VEC3", "three floats, as it must be");
     }
 
-    /// A skinned mesh is a mesh of its own for each of its nodes: assimp keeps one skin a mesh.
+    /// A skinned mesh is a mesh of its own for each of its nodes: assimp keeps one skin a mesh. So is one with
+    /// morph targets, whose weights are a node's.
     void separate_skinned_meshes() {
         std::vector<bool> taken(size("meshes"));
         std::size_t joints = 0;
@@ -293,12 +249,18 @@ class GltfChecker {
                 if (skinned) joints += joint_count(node, mesh);
                 if (joints > max_joints)
                     fail_read(file_, "its skins have more than 2^20 joints, counted for each primitive");
-                if (skinned && taken[index]) {
+                if ((skinned || has_targets(mesh)) && taken[index]) {
                     node["mesh"] = size("meshes");
                     json_["meshes"].push_back(mesh);
                 }
                 taken[index] = true;
             }
+    }
+
+    [[nodiscard]] static bool has_targets(const Json& mesh) {
+        return std::ranges::any_of(mesh.value("primitives", Json::array()), [](const Json& primitive) {
+            return !primitive.value("targets", Json::array()).empty();
+        });
     }
 
     [[nodiscard]] std::size_t joint_count(const Json& node, const Json& mesh) const {
@@ -411,16 +373,16 @@ class GltfChecker {
 
     const std::filesystem::path& file_;
     Json json_;
-    const Container& container_;
+    const GltfContainer& container_;
     std::vector<bool> in_scene_;  ///< of each node: some scene reaches it
 };
 
 }  // namespace
 
-CheckedGltf check_gltf(const std::filesystem::path& file, const std::string& bytes) {
-    const Container container = open_container(file, bytes);
+CheckedGltf check_gltf(const std::filesystem::path& file, const std::string& bytes, GltfFilePart part) {
+    const GltfContainer container = open_container(file, bytes);
     try {
-        return GltfChecker(file, copy_gltf(file, container.json), container).check();
+        return GltfChecker(file, copy_gltf(file, container.json, part), container).check(part);
     } catch (const Json::exception& error) {
         fail_read(file, std::string("malformed glTF: ") + error.what());
     }

@@ -17,7 +17,19 @@ using Json = nlohmann::json;
 
 constexpr int max_json_depth = 64;
 
-enum class Type { Index, Indices, Number, Numbers, Text, Flag, IndexMap, Object, Objects };
+enum class Type {
+    Index,
+    Indices,
+    Number,
+    Numbers,
+    NumberList,
+    Text,
+    Flag,
+    IndexMap,
+    IndexMaps,
+    Object,
+    Objects
+};
 
 struct Key;
 using Keys = std::span<const Key>;
@@ -27,6 +39,7 @@ struct Key {
     Type type;
     Keys keys = {};         ///< of Object and Objects
     std::size_t count = 0;  ///< of Numbers
+    GltfFilePart part = GltfFilePart::Still;
 };
 
 constexpr Key texture[] = {{"index", Type::Index}, {"texCoord", Type::Index}};
@@ -68,8 +81,11 @@ constexpr Key texture_source[] = {{"source", Type::Index}};
 constexpr Key primitive[] = {{"attributes", Type::IndexMap},
                              {"indices", Type::Index},
                              {"material", Type::Index},
-                             {"mode", Type::Index}};
-constexpr Key mesh[] = {{"name", Type::Text}, {"primitives", Type::Objects, primitive}};
+                             {"mode", Type::Index},
+                             {"targets", Type::IndexMaps, {}, 0, GltfFilePart::Moving}};
+constexpr Key mesh[] = {{"name", Type::Text},
+                        {"primitives", Type::Objects, primitive},
+                        {"weights", Type::NumberList, {}, 0, GltfFilePart::Moving}};
 constexpr Key perspective[] = {
     {"aspectRatio", Type::Number}, {"yfov", Type::Number}, {"zfar", Type::Number}, {"znear", Type::Number}};
 constexpr Key orthographic[] = {
@@ -95,8 +111,16 @@ constexpr Key node[] = {{"name", Type::Text},
                         {"translation", Type::Numbers, {}, 3},
                         {"rotation", Type::Numbers, {}, 4},
                         {"scale", Type::Numbers, {}, 3},
+                        {"weights", Type::NumberList, {}, 0, GltfFilePart::Moving},
                         {"extensions", Type::Object, node_extensions}};
 constexpr Key skin[] = {{"inverseBindMatrices", Type::Index}, {"joints", Type::Indices}};
+constexpr Key animation_target[] = {{"node", Type::Index}, {"path", Type::Text}};
+constexpr Key animation_channel[] = {{"sampler", Type::Index}, {"target", Type::Object, animation_target}};
+constexpr Key animation_sampler[] = {
+    {"input", Type::Index}, {"output", Type::Index}, {"interpolation", Type::Text}};
+constexpr Key animation[] = {{"name", Type::Text},
+                             {"channels", Type::Objects, animation_channel},
+                             {"samplers", Type::Objects, animation_sampler}};
 constexpr Key scene[] = {{"nodes", Type::Indices}};
 constexpr Key asset[] = {{"version", Type::Text}};
 constexpr Key root[] = {{"asset", Type::Object, asset},
@@ -112,6 +136,7 @@ constexpr Key root[] = {{"asset", Type::Object, asset},
                         {"textures", Type::Objects, texture_source},
                         {"images", Type::Objects, image},
                         {"cameras", Type::Objects, camera},
+                        {"animations", Type::Objects, animation, 0, GltfFilePart::Moving},
                         {"extensions", Type::Object, root_extensions}};
 
 constexpr const char* attributes_read[] = {"POSITION", "NORMAL", "COLOR_0", "JOINTS_0", "WEIGHTS_0"};
@@ -120,14 +145,16 @@ constexpr const char* extensions_read[] = {"KHR_lights_punctual", "KHR_materials
 
 class Copier {
   public:
-    explicit Copier(const std::filesystem::path& file) : file_(file) {}
+    Copier(const std::filesystem::path& file, GltfFilePart part) : file_(file), part_(part) {}
 
     [[nodiscard]] Json object(const Json& from, Keys keys, const char* name) const {
         if (!from.is_object()) wrong(name, "an object");
         Json copy = Json::object();
-        for (const Key& key : keys)
+        for (const Key& key : keys) {
+            if (key.part == GltfFilePart::Moving && part_ == GltfFilePart::Still) continue;
             if (const auto found = from.find(key.name); found != from.end())
                 copy[key.name] = value(*found, key);
+        }
         return copy;
     }
 
@@ -167,9 +194,10 @@ class Copier {
             case Type::Numbers:
                 if (!from.is_array() || from.size() != key.count)
                     wrong(key.name, "numbers, as many as glTF says");
-                for (const Json& item : from)
-                    if (!is_number(item)) wrong(key.name, "numbers");
-                return from;
+                return numbers(from, key.name);
+            case Type::NumberList:
+                if (!from.is_array()) wrong(key.name, "an array of numbers");
+                return numbers(from, key.name);
             case Type::Indices:
                 if (!from.is_array()) wrong(key.name, "an array of integers");
                 for (const Json& item : from)
@@ -177,6 +205,12 @@ class Copier {
                 return from;
             case Type::IndexMap:
                 return attributes(from, key.name);
+            case Type::IndexMaps: {
+                if (!from.is_array()) wrong(key.name, "an array");
+                Json copies = Json::array();
+                for (const Json& item : from) copies.push_back(attributes(item, key.name));
+                return copies;
+            }
             case Type::Object:
                 return object(from, key.keys, key.name);
             case Type::Objects: {
@@ -187,6 +221,12 @@ class Copier {
             }
         }
         return {};
+    }
+
+    [[nodiscard]] const Json& numbers(const Json& from, const char* name) const {
+        for (const Json& item : from)
+            if (!is_number(item)) wrong(name, "numbers");
+        return from;
     }
 
     [[nodiscard]] Json attributes(const Json& from, const char* name) const {
@@ -202,6 +242,7 @@ class Copier {
     }
 
     const std::filesystem::path& file_;
+    GltfFilePart part_;
 };
 
 Json parse(const std::filesystem::path& file, const std::string& text) {
@@ -231,9 +272,9 @@ void check_extensions(const std::filesystem::path& file, const Json& json) {
 
 }  // namespace
 
-Json copy_gltf(const std::filesystem::path& file, const std::string& text) {
+Json copy_gltf(const std::filesystem::path& file, const std::string& text, GltfFilePart part) {
     const Json json = parse(file, text);
-    Json copy = Copier(file).object(json, root, "glTF");
+    Json copy = Copier(file, part).object(json, root, "glTF");
     const std::string version = copy.value("asset", Json::object()).value("version", std::string());
     if (version.empty() || version[0] != '2')
         fail_read(file, "glTF version " + in_quotes(version, 20) + "; version 2 is read");

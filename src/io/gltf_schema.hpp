@@ -8,9 +8,16 @@
 
 namespace setka::io::detail {
 
-/// Parses glTF 2 JSON and copies what setka reads. Throws InvalidData for text that is no JSON, another
+/// How much of a file is wanted.
+enum class GltfFilePart {
+    Still,   ///< what stands: animations and morph targets stay behind
+    Moving,  ///< those too
+};
+
+/// Parses glTF 2 JSON and copies what setka reads of this part. Throws InvalidData for text that is no JSON, another
 /// version, a value of the wrong type, or a required extension that is not read.
-[[nodiscard]] nlohmann::json copy_gltf(const std::filesystem::path& file, const std::string& text);
+[[nodiscard]] nlohmann::json copy_gltf(const std::filesystem::path& file, const std::string& text,
+                                       GltfFilePart part);
 
 /// A relative URI as a path: %20 and the like decoded.
 [[nodiscard]] std::string decode_uri(const std::string& uri);

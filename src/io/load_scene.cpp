@@ -3,6 +3,7 @@
 #include <new>
 
 #include "io/file.hpp"
+#include "io/place_meshes.hpp"
 #include "io/readers.hpp"
 #include "setka/io.hpp"
 
@@ -11,27 +12,6 @@ namespace setka::io {
 namespace {
 
 using detail::fail_read;
-using detail::RawMesh;
-
-/// The scene of a format without nodes and materials: an instance a mesh.
-Scene place_all(const std::filesystem::path& file, std::vector<RawMesh> meshes) {
-    Scene scene;
-    for (RawMesh& raw : meshes) {
-        Material material;
-        if (raw.colour) material.diffuse = *raw.colour;
-        Mesh mesh = detail::finish_mesh(file, std::move(raw));
-        if (mesh.triangles.empty()) continue;
-        // Meshes without colours share the material.
-        const bool reuse = !scene.materials.empty() && scene.materials.back().diffuse == material.diffuse;
-        if (!reuse) scene.materials.push_back(material);
-        Instance instance;
-        instance.mesh = static_cast<std::uint32_t>(scene.meshes.size());
-        instance.material = static_cast<std::uint32_t>(scene.materials.size() - 1);
-        scene.instances.push_back(instance);
-        scene.meshes.push_back(std::move(mesh));
-    }
-    return scene;
-}
 
 enum class Format { Obj, Ply, Stl, Off, Gltf };
 
@@ -58,11 +38,11 @@ Scene read(const std::filesystem::path& file) {
         case Format::Gltf:
             return detail::read_gltf(file, std::move(bytes));
         case Format::Ply:
-            return place_all(file, detail::read_ply(file, bytes));
+            return detail::place_meshes(file, detail::read_ply(file, bytes)).scene;
         case Format::Stl:
-            return place_all(file, detail::read_stl(file, bytes));
+            return detail::place_meshes(file, detail::read_stl(file, bytes)).scene;
         case Format::Off:
-            return place_all(file, detail::read_off(file, bytes));
+            return detail::place_meshes(file, detail::read_off(file, bytes)).scene;
     }
     return {};
 }

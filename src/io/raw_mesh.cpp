@@ -85,31 +85,40 @@ std::vector<std::uint32_t> first_equal(const Mesh& mesh) {
     return first;
 }
 
-/// Keeps the vertices that triangles use, in their order, and renumbers the triangles.
-void compact(Mesh& mesh) {
+/// Keeps the vertices that triangles use, in their order, and renumbers the triangles. Returns the former
+/// number of each.
+std::vector<std::uint32_t> compact(Mesh& mesh) {
     std::vector<std::uint32_t> number(mesh.positions.size(), unset);
     for (const Triangle& t : mesh.triangles) number[t.a] = number[t.b] = number[t.c] = 0;
     std::uint32_t count = 0;
+    std::vector<std::uint32_t> kept;
     for (std::uint32_t i = 0; i < number.size(); ++i) {
         if (number[i] == unset) continue;
         mesh.positions[count] = mesh.positions[i];
         if (!mesh.normals.empty()) mesh.normals[count] = mesh.normals[i];
+        kept.push_back(i);
         number[i] = count++;
     }
     mesh.positions.resize(count);
     if (!mesh.normals.empty()) mesh.normals.resize(count);
     for (Triangle& t : mesh.triangles) t = {number[t.a], number[t.b], number[t.c]};
+    return kept;
 }
 
 }  // namespace
 
 Mesh finish_mesh(const std::filesystem::path& file, RawMesh raw) {
+    return finish_traced_mesh(file, std::move(raw)).mesh;
+}
+
+TracedMesh finish_traced_mesh(const std::filesystem::path& file, RawMesh raw) {
     // Indices and triangle numbers are 32-bit everywhere.
     if (raw.positions.size() >= unset || raw.corners.size() >= unset)
         fail_read(file, describe(raw) + " has more than 2^32 - 2 vertices or corners");
     check_corners(file, raw);
 
-    Mesh mesh;
+    TracedMesh traced;
+    Mesh& mesh = traced.mesh;
     mesh.name = std::move(raw.name);
     mesh.positions = std::move(raw.positions);
     mesh.normals = std::move(raw.normals);
@@ -126,9 +135,11 @@ Mesh finish_mesh(const std::filesystem::path& file, RawMesh raw) {
         const std::vector<std::uint32_t> first = first_equal(mesh);
         for (Triangle& t : mesh.triangles) t = {first[t.a], first[t.b], first[t.c]};
     }
-    compact(mesh);
-    if (!keep_normals) make_normals(mesh);
-    return mesh;
+    traced.sources = compact(mesh);
+    if (keep_normals) return traced;
+    traced.normals_from = NormalsFrom::Faces;
+    for (const std::uint32_t repeated : make_normals(mesh)) traced.sources.push_back(traced.sources[repeated]);
+    return traced;
 }
 
 }  // namespace setka::io::detail

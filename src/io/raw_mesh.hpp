@@ -40,6 +40,18 @@ struct RawMesh {
 /// `file`, mesh and vertex, for an index out of range or a non-finite vertex that is used.
 [[nodiscard]] Mesh finish_mesh(const std::filesystem::path& file, RawMesh raw);
 
+/// Whose normals a mesh has.
+enum class NormalsFrom { File, Faces };
+
+/// A mesh that can be moved later: what became of each vertex is known.
+struct TracedMesh {
+    Mesh mesh;
+    std::vector<std::uint32_t> sources;  ///< of each vertex, the one of the RawMesh
+    NormalsFrom normals_from = NormalsFrom::File;
+};
+/// The same mesh, traced.
+[[nodiscard]] TracedMesh finish_traced_mesh(const std::filesystem::path& file, RawMesh raw);
+
 /// Splits a polygon into corners.size() - 2 triangles: a fan where it is convex, by cutting ears where it is
 /// not.
 void triangulate(std::span<const Float3> positions, std::span<const std::uint32_t> corners,
@@ -47,6 +59,19 @@ void triangulate(std::span<const Float3> positions, std::span<const std::uint32_
 
 /// Gives a mesh smooth normals, split where faces meet at more than 45 degrees: a split vertex is repeated at
 /// the end of the positions. Triangles keep their order, their winding and the positions of their corners.
-void make_normals(Mesh& mesh);
+/// Returns the vertex that each of those at the end repeats.
+std::vector<std::uint32_t> make_normals(Mesh& mesh);
+
+/// Which faces make up each normal of a mesh whose normals were made: they stay so when it moves.
+struct NormalRecipe {
+    std::vector<std::uint32_t> starts, faces;  ///< of vertex v: faces[starts[v]] to faces[starts[v + 1]]
+};
+/// The recipe by which make_normals made them, from where the mesh stands; `sources` tells which vertices
+/// were one.
+[[nodiscard]] NormalRecipe normal_recipe(const Mesh& mesh, std::span<const std::uint32_t> sources);
+/// The normals of the same triangles at other positions.
+[[nodiscard]] std::vector<Float3> remake_normals(const NormalRecipe& recipe,
+                                                 std::span<const Triangle> triangles,
+                                                 std::span<const Float3> positions);
 
 }  // namespace setka::io::detail

@@ -5,10 +5,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "io/gltf_document.hpp"
 #include "io/raw_mesh.hpp"
 #include "setka/scene.hpp"
 
@@ -36,11 +38,13 @@ namespace setka::io::detail {
 
 /// A glTF file that was checked: bytes that assimp can be trusted with, and what it must make of them.
 struct CheckedGltf {
-    std::string bytes;                  ///< the file again, reduced to what setka reads
-    std::uint64_t triangle_count = 0;   ///< of all meshes, each once
-    std::vector<double> vertical_fovs;  ///< of each camera in radians; 0 for one without perspective
+    std::string bytes;                              ///< the file again, reduced to what stands
+    std::uint64_t triangle_count = 0;               ///< of all meshes, each once
+    std::vector<double> vertical_fovs;              ///< of each camera in radians; 0 for one without perspective
+    std::shared_ptr<const GltfDocument> document;  ///< of GltfFilePart::Moving: the rest, too
 };
 /// Throws InvalidData for wrong types, references, ranges and unsupported extensions.
-[[nodiscard]] CheckedGltf check_gltf(const std::filesystem::path& file, const std::string& bytes);
+[[nodiscard]] CheckedGltf check_gltf(const std::filesystem::path& file, const std::string& bytes,
+                                     GltfFilePart part = GltfFilePart::Still);
 
 }  // namespace setka::io::detail

@@ -2,6 +2,7 @@
 /// Do pictures reach their files with the right pixels, and do failures say why and leave nothing behind?
 #include <OpenImageIO/imageio.h>
 
+#include "setka/animation.hpp"
 #include "tests/io/support.hpp"
 
 namespace setka::io::test {
@@ -100,6 +101,60 @@ TEST(CheckImageWritable, LeavesNothingAndTouchesNothing) {
     (void)folder.write("old.png", "old");
     check_image_writable(folder / "old.png");
     EXPECT_EQ(read_bytes(folder / "old.png"), "old");
+}
+
+/// An image of one grey, as GIF can hold it without loss.
+Image grey(std::uint8_t value, std::uint32_t width = 5) {
+    Image image;
+    image.width = width;
+    image.height = 3;
+    image.linear.resize(std::size_t(width) * 3);
+    image.srgb.assign(std::size_t(width) * 9, value);
+    return image;
+}
+
+TEST(GifFile, HoldsEveryPictureAndItsTime) {
+    const Folder folder;
+    {
+        GifFile gif(folder / "a.gif", 12);
+        for (const std::uint8_t value : {0, 100, 250}) gif.add(grey(value));
+        EXPECT_FALSE(std::filesystem::exists(folder / "a.gif")) << "only when it is complete";
+        gif.finish();
+    }
+    EXPECT_EQ(folder.file_count(), 1u);
+    const auto input = OIIO::ImageInput::open((folder / "a.gif").string());
+    ASSERT_TRUE(input);
+    int count = 0;
+    for (const int value : {0, 100, 250}) {
+        ASSERT_TRUE(input->seek_subimage(count++, 0)) << "picture " << count;
+        const int channels = input->spec().nchannels;
+        std::vector<std::uint8_t> pixels(std::size_t(15 * channels));
+        ASSERT_TRUE(input->read_image(count - 1, 0, 0, channels, OIIO::TypeDesc::UINT8, pixels.data()));
+        EXPECT_NEAR(pixels[0], value, 4);
+        const OIIO::ParamValue* rate = input->spec().find_attribute("FramesPerSecond");
+        ASSERT_TRUE(rate);
+        EXPECT_EQ(rate->get_string(), "100/8") << "8 hundredths of a second";
+    }
+    EXPECT_FALSE(input->seek_subimage(count, 0)) << "too many";
+}
+
+TEST(GifFile, LeavesNothingBehindOnFailure) {
+    const Folder folder;
+    const auto refuses = [](const auto& action, const std::vector<std::string>& phrases) {
+        expect_error(action, ErrorCategory::InvalidArgument, phrases);
+    };
+    refuses([&] { GifFile(folder / "a.apng", 24); }, {"a.apng", ".gif"});
+    refuses([&] { GifFile(folder / "none/a.gif", 24); }, {"none/a.gif"});
+    refuses([&] { GifFile(folder / "a.gif", 0); }, {"frames_per_second = 0"});
+    refuses([&] { GifFile(folder / "a.gif", 24).finish(); }, {"a.gif", "no picture"});
+    refuses(
+        [&] {
+            GifFile gif(folder / "a.gif", 24);
+            gif.add(grey(1));
+            gif.add(grey(2, 6));
+        },
+        {"6 x 3", "5 x 3 as before"});
+    EXPECT_EQ(folder.file_count(), 0u);
 }
 
 }  // namespace
