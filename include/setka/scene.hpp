@@ -128,7 +128,7 @@ struct SceneUpdate {
     struct Vertices {
         std::uint32_t mesh = 0;
         std::vector<Float3> positions;  ///< as many as the mesh has, in its object space
-        std::vector<Float3> normals;    ///< as many as the mesh has, or none if it has none
+        std::vector<Float3> normals;    ///< as many as the mesh has; empty: those that it has stay
     };
     std::vector<Placement> placements;
     std::vector<Vertices> vertices;

@@ -4,8 +4,8 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 
+#include "cli/camera_options.hpp"
 #include "cli/command.hpp"
 #include "cli/text.hpp"
 #include "workload/measure.hpp"
@@ -28,36 +28,11 @@ struct Options {
     StructureChoice structure;
     RenderOptions render;
     std::string output;
-    std::pair<std::uint32_t, std::uint32_t> size{1280, 720};
-    std::optional<Float3> eye, target;
-    Float3 up{0, 1, 0};
-    std::optional<float> fov_degrees;
-    bool inside = false;
-    bool ignore_camera = false;
+    PictureOptions picture;
+    CameraOptions camera;
     ProgressMode progress = ProgressMode::Auto;
     bool as_json = false;
 };
-
-/// The camera that the options ask for, over the file's, over one that frames the scene.
-[[nodiscard]] Camera choose_camera(const Scene& scene, const Options& options) {
-    const bool is_own = options.eye || options.target || options.inside || options.ignore_camera;
-    const auto fov_or = [&](float other) { return options.fov_degrees.value_or(other); };
-    Camera camera;
-    if (scene.camera && !is_own) {
-        camera = *scene.camera;
-        camera.vertical_fov_degrees = fov_or(camera.vertical_fov_degrees);
-    } else if (options.inside) {
-        camera = frame_inside(scene.bounds(), fov_or(65));
-    } else {
-        const float aspect = float(options.render.width) / float(options.render.height);
-        camera = frame(scene.bounds(), aspect, fov_or(50));
-    }
-    if (options.eye) camera.eye = turn_up(*options.eye, options.up);
-    if (options.target) camera.target = turn_up(*options.target, options.up);
-    // Straight up or down, +y is no direction in the picture.
-    if (is_own && camera.eye.x == camera.target.x && camera.eye.z == camera.target.z) camera.up = {0, 0, -1};
-    return camera;
-}
 
 struct Times {
     double load_ms = 0, build_ms = 0, render_ms = 0;
@@ -124,7 +99,7 @@ struct Rendered {
 }
 
 [[nodiscard]] ExitCode run(Options options) {
-    std::tie(options.render.width, options.render.height) = options.size;
+    options.picture.complete(options.render);
     io::check_image_writable(options.output);
     Progress progress(options.progress);
     options.render.progress = [&](double share) { progress.update("rendering", share); };
@@ -133,9 +108,10 @@ struct Rendered {
     progress.update("loading", 0);
     const workload::Stopwatch load_watch;
     Scene scene = options.input.load();
-    turn_up(scene, options.up);
+    turn_up(scene, options.camera.up);
     scene.validate();
-    const Camera camera = choose_camera(scene, options);
+    const float aspect = float(options.render.width) / float(options.render.height);
+    const Camera camera = options.camera.choose(scene.camera, [&] { return scene.bounds(); }, aspect);
     if (scene.point_lights.empty() && scene.directional_lights.empty()) add_default_lights(scene, camera);
     times.load_ms = load_watch.elapsed_ms();
 
@@ -165,25 +141,6 @@ struct Rendered {
     return exit_ok;
 }
 
-void add_camera_options(CLI::App& app, Options& options) {
-    const std::string group = "Camera";
-    const auto point = [](const std::string& option, const std::string& text) {
-        return std::optional(parse_point(option, text));
-    };
-    add_parsed(app, "--eye", options.eye, point, "X,Y,Z", "where the camera is")->group(group);
-    add_parsed(app, "--target", options.target, point, "X,Y,Z", "what the camera looks at")->group(group);
-    add_parsed(app, "--up", options.up, parse_axis, "AXIS", "which way is up: x, y, z, -x, -y, -z or X,Y,Z",
-               "y")
-        ->group(group);
-    const auto angle = [](const std::string& option, const std::string& text) {
-        return std::optional(static_cast<float>(parse_number(option, text, {1, 170})));
-    };
-    add_parsed(app, "--fov", options.fov_degrees, angle, "DEGREES", "vertical field of view")->group(group);
-    app.add_flag("--inside", options.inside, "look around inside the scene's box")->group(group);
-    app.add_flag("--ignore-camera", options.ignore_camera, "frame the scene even if the file has a camera")
-        ->group(group);
-}
-
 }  // namespace
 
 Command add_render_command(CLI::App& program) {
@@ -194,21 +151,10 @@ Command add_render_command(CLI::App& program) {
                     "picture to write: PNG, JPEG, TIFF, BMP, TGA, PPM, EXR, HDR or PFM")
         ->type_name("FILE")
         ->required();
-    add_parsed(*app, "--size", options->size, parse_size, "WxH", "pixels", "1280x720");
-    add_integer(*app, "--samples", options->render.samples_per_axis, {1, 16},
-                "samples a pixel, along each axis");
-    add_integer(*app, "--depth", options->render.max_depth, {0, 16},
-                "mirror and refraction rays after the first");
-    add_choice<View>(*app, "--view", options->render.view,
-                     {{"shaded", View::Shaded},
-                      {"normals", View::Normals},
-                      {"depth", View::Depth},
-                      {"steps", View::Steps},
-                      {"tests", View::Tests}},
-                     "what a pixel shows; steps and tests are heat maps of the work a ray makes");
+    options->picture.add_to(*app, options->render);
     add_progress_option(*app, options->progress);
     app->add_flag("--json", options->as_json, "print JSON");
-    add_camera_options(*app, *options);
+    options->camera.add_to(*app);
     options->structure.add_to(*app);
     add_step_option(*app, options->render.trace.step);
     options->device.add_to(*app);

@@ -27,7 +27,7 @@ struct BuiltInChoice {
     std::uint64_t triangles = 0;
 };
 
-[[nodiscard]] bool is_built_in(std::string_view name) {
+[[nodiscard]] bool is_built_in_name(std::string_view name) {
     return std::ranges::any_of(built_in_scenes(),
                                [&](const BuiltInScene& scene) { return scene.name == name; });
 }
@@ -35,7 +35,7 @@ struct BuiltInChoice {
 [[nodiscard]] std::optional<BuiltInChoice> find_built_in(const std::string& text) {
     const std::size_t colon = text.find(':');
     BuiltInChoice choice{text.substr(0, colon)};
-    if (!is_built_in(choice.name)) return std::nullopt;
+    if (!is_built_in_name(choice.name)) return std::nullopt;
     if (colon != std::string::npos)
         choice.triangles = parse_integer(choice.name, text.substr(colon + 1), {1, std::uint64_t{1} << 28});
     return choice;
@@ -84,9 +84,12 @@ struct BuiltInChoice {
 }  // namespace
 
 void SceneInput::add_to(CLI::App& app) {
+    add_to(app, "mesh files (OBJ, PLY, STL, OFF, glTF, GLB), all in one scene");
+}
+
+void SceneInput::add_to(CLI::App& app, const std::string& description) {
     app.add_option("FILES", files,
-                   "mesh files (OBJ, PLY, STL, OFF, glTF, GLB), all in one scene; or one built-in scene (" +
-                       built_in_names() + "), sized as in terrain:50000")
+                   description + "; or one built-in scene (" + built_in_names() + "), sized as in terrain:50000")
         ->type_name("")
         ->required();
     add_parsed(
@@ -112,7 +115,7 @@ Scene SceneInput::load() const {
                     fmt::format("--triangles {} is for one built-in scene, not for files", triangles));
     for (const std::string& file : files) {
         if (fs::exists(file)) continue;
-        if (is_built_in(file.substr(0, file.find(':'))))
+        if (is_built_in_name(file.substr(0, file.find(':'))))
             throw Error(ErrorCategory::InvalidArgument,
                         fmt::format("'{}' is a built-in scene; it cannot be mixed with other scenes", file));
         if (!fs::path(file).has_extension() && !fs::path(file).has_parent_path())
@@ -123,6 +126,8 @@ Scene SceneInput::load() const {
     const std::vector<fs::path> paths(files.begin(), files.end());
     return io::load_scene(paths);
 }
+
+bool SceneInput::is_built_in() const { return files.size() == 1 && find_built_in(files.front()).has_value(); }
 
 std::string SceneInput::name() const {
     if (files.size() == 1) return files.front();
@@ -145,6 +150,17 @@ void turn_up(Scene& scene, const Float3& up) {
         turn(scene.camera->eye);
         turn(scene.camera->target);
         turn(scene.camera->up);
+    }
+}
+
+void turn_up(SceneUpdate& update, const Float3& up) {
+    const Matrix34 rotation = rotation_from(up);
+    const auto turn = [&](Float3& v) { v = transform_point(rotation, v); };
+    for (SceneUpdate::Placement& placement : update.placements) placement.transform = turned(rotation, placement.transform);
+    if (update.camera) {
+        turn(update.camera->eye);
+        turn(update.camera->target);
+        turn(update.camera->up);
     }
 }
 

@@ -51,7 +51,7 @@ void check(const SceneUpdate::Vertices& vertices, std::size_t index, const Scene
                  ", which has ", accepted);
     };
     check_count(vertices.positions.size(), mesh.positions.size(), "positions");
-    check_count(vertices.normals.size(), mesh.normals.size(), "normals");
+    if (!vertices.normals.empty()) check_count(vertices.normals.size(), mesh.normals.size(), "normals");
     check_finite(vertices.positions, index, "position");
     check_finite(vertices.normals, index, "normal");
 }

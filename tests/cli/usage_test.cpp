@@ -127,7 +127,7 @@ INSTANTIATE_TEST_SUITE_P(Misuses, Usage, ::testing::ValuesIn(misuses),
 
 TEST(Help, IsThereForEverything) {
     for (const char* command :
-         {"devices", "render", "build", "trace", "verify", "validate", "compare", "scene"}) {
+         {"devices", "render", "animate", "build", "trace", "verify", "validate", "compare", "scene"}) {
         const Outcome outcome = run({command, "--help"});
         EXPECT_EQ(outcome.exit_code, 0);
         EXPECT_THAT(outcome.output, HasSubstr("--help"));

@@ -20,7 +20,7 @@ constexpr float nan = std::numeric_limits<float>::quiet_NaN();
 Scene make_two() {
     Scene scene;
     scene.meshes.push_back(
-        {"", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, std::vector<Float3>(3, {0, 0, 1})});
+        {"", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}, std::vector<Float3>(3, {0, 0, 1}), {}});
     scene.instances.resize(2);
     scene.materials.resize(1);
     return scene;
@@ -44,6 +44,10 @@ TEST(SceneUpdate, MovesPlacementsVerticesAndCamera) {
     EXPECT_EQ(scene.meshes[0].normals, update.vertices[0].normals);
     ASSERT_TRUE(scene.camera);
     EXPECT_EQ(scene.camera->eye, (Float3{9, 9, 9}));
+    SceneUpdate without_normals;
+    without_normals.vertices.push_back({0, scene.meshes[0].positions, {}});
+    apply(scene, without_normals);
+    EXPECT_EQ(scene.meshes[0].normals, update.vertices[0].normals) << "normals that are not given stay";
     apply(scene, {});
     EXPECT_TRUE(scene.camera) << "what is not in an update stays";
 }
@@ -73,7 +77,7 @@ TEST(SceneUpdate, IsRefusedAsAWhole) {
             "update.vertices[0]: mesh = 1 does not exist; there are 1");
     refuses([](SceneUpdate& u) { u.vertices[0].positions.pop_back(); },
             "2 positions for mesh 0, which has 3");
-    refuses([](SceneUpdate& u) { u.vertices[0].normals.clear(); }, "0 normals for mesh 0, which has 3");
+    refuses([](SceneUpdate& u) { u.vertices[0].normals.pop_back(); }, "2 normals for mesh 0, which has 3");
     refuses([](SceneUpdate& u) { u.vertices[0].positions[2].y = nan; }, "position 2 is (0, nan, 2)");
     refuses([](SceneUpdate& u) { u.vertices[0].normals[1].x = nan; }, "normal 1 is (nan, 1, 0)");
     refuses([](SceneUpdate& u) { u.camera->target = u.camera->eye; }, "update.camera: eye and target");
