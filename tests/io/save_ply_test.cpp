@@ -14,7 +14,8 @@ Scene tetrahedron() {
     scene.meshes.push_back({"t",
                             {{0.1f, denormal, -0.0f}, {1e30f, 0, 0}, {0, 1.0000001f, 0}, {0, 0, 16777216}},
                             {{3, 2, 1}, {0, 1, 3}, {0, 0, 2}, {1, 2, 0}},
-                            {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}, {0, 0, -1}}});
+                            {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}, {0, 0, -1}},
+                            {}});
     scene.materials.emplace_back();
     scene.instances.emplace_back();
     return scene;

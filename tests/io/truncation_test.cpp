@@ -20,6 +20,7 @@ std::vector<Sample> samples() {
     scene.meshes.push_back({"m",
                             {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
                             {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}},
+                            {},
                             {}});
     scene.materials.emplace_back();
     scene.instances.emplace_back();
