@@ -225,8 +225,9 @@ TEST(Animate, DoesNotMixPicturesOfOtherOptions) {
 TEST(Animate, IsInterruptedBetweenWholePictures) {
     SETKA_NEED_DEVICE();
     const Films films;
-    std::vector<std::string> arguments =
-        films.animate("scene.gltf", {"--fps", "400", "--progress", "--size", "400x300", "--samples", "4"});
+    std::vector<std::string> arguments{
+        "animate", films / "scene.gltf", "-o", films / "out/%03d.png", "--fps", "400", "--size",
+        "400x300", "--samples",          "4"};
     const Outcome outcome = run_and_interrupt(
         arguments, [&](const std::string&) { return std::filesystem::exists(films / "out/001.png"); });
     EXPECT_EQ(outcome.exit_code, 130) << outcome.errors;
