@@ -96,6 +96,15 @@ TEST(Animation, MovesNodesAndWhatIsBelowThem) {
     EXPECT_THAT(corners(1000), ElementsAre(near(10, 20, 0), near(10, 21, 0))) << "the last key holds";
 }
 
+TEST(Animation, MovesWhatIsBelowANodeThatMoves) {
+    File file;
+    file.move(0, "translation", "LINEAR", {0, 1}, "VEC3", 3, {0, 0, 0, 4, 0, 0});
+    const SceneUpdate update = file.open().at(0.5);
+    ASSERT_EQ(update.placements.size(), 1u);
+    EXPECT_EQ(update.placements[0].instance, 0u);
+    EXPECT_EQ(update.placements[0].transform.rows[3], 2);
+}
+
 TEST(Animation, OpensAtItsFirstMoment) {
     File file;
     file.move(1, "translation", "STEP", {0, 1}, "VEC3", 3, {7, 0, 0, 8, 0, 0});
