@@ -65,6 +65,10 @@ class DeviceScene {
     void set_transform(std::uint32_t number, const Matrix34& transform);
     void remove_instance(std::uint32_t number);
 
+    /// Moves what the update says, and commits; its camera is the renderer's business. Throws what the calls above throw, after all of the update
+    /// was checked; and what commit() throws.
+    void apply(Queue& queue, const SceneUpdate& update);
+
     // What is shaded with. Throws InvalidData for what Scene::validate would refuse.
 
     /// The number of the new material.

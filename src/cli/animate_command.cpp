@@ -138,16 +138,6 @@ class CameraPath {
     return settings;
 }
 
-/// Moves the scene on the device: the only place that knows how.
-void move(Queue& queue, DeviceScene& scene, const SceneUpdate& update) {
-    for (const SceneUpdate::Vertices& vertices : update.vertices)
-        scene.set_vertices(queue, vertices.mesh, vertices.positions, vertices.normals);
-    for (const SceneUpdate::Placement& placement : update.placements)
-        scene.set_transform(placement.instance, placement.transform);
-    scene.commit(queue);
-    queue.finish();
-}
-
 /// The work of a film, picture by picture.
 class Film {
   public:
@@ -172,7 +162,8 @@ class Film {
         };
         SceneUpdate update;
         timed(report.times.pose_ms, [&] { update = footage_.at(moment); });
-        timed(report.times.upload_ms, [&] { move(queue_, scene_, update); });
+        timed(report.times.upload_ms, [&] { scene_.apply(queue_, update);
+            queue_.finish(); });
         std::unique_ptr<Structure> structure;
         timed(report.times.build_ms, [&] {
             structure = options_.structure.build(queue_, scene_);

@@ -144,15 +144,30 @@ std::size_t vertices_in(const char* what, const Buffer<float>& buffer) {
 
 }  // namespace
 
-void DeviceScene::set_vertices(Queue& queue, std::uint32_t mesh, std::span<const Float3> positions,
-                               std::span<const Float3> normals) {
-    const MeshPlace& place = state_->mesh(mesh).place;
+namespace {
+
+/// The same of vertices on the host, which have to be finite.
+void check_vertices(const MeshPlace& place, std::uint32_t mesh, std::span<const Float3> positions,
+                    std::span<const Float3> normals) {
     check_vertices(place, mesh, positions.size(), normals.size());
     const std::string owner = "mesh " + number(mesh);
     check_finite(owner, "position", positions);
     check_finite(owner, "normal", normals);
-    state_->tables.write_positions(queue, place, positions);
-    if (!normals.empty()) state_->tables.write_normals(queue, place, normals);
+}
+
+void write_vertices(Queue& queue, MeshTables& tables, const MeshPlace& place, std::span<const Float3> positions,
+                    std::span<const Float3> normals) {
+    tables.write_positions(queue, place, positions);
+    if (!normals.empty()) tables.write_normals(queue, place, normals);
+}
+
+}  // namespace
+
+void DeviceScene::set_vertices(Queue& queue, std::uint32_t mesh, std::span<const Float3> positions,
+                               std::span<const Float3> normals) {
+    const MeshPlace& place = state_->mesh(mesh).place;
+    check_vertices(place, mesh, positions, normals);
+    write_vertices(queue, state_->tables, place, positions, normals);
 }
 
 void DeviceScene::set_vertices(Queue& queue, std::uint32_t mesh, const Buffer<float>& positions,
@@ -165,6 +180,19 @@ void DeviceScene::set_vertices(Queue& queue, std::uint32_t mesh, const Buffer<fl
     const std::size_t first = 3 * place.vertices.first;
     queue.copy(positions, 0, tables.positions(), first, positions.size());
     if (!normals.empty()) queue.copy(normals, 0, tables.normals(), first, normals.size());
+}
+
+void DeviceScene::apply(Queue& queue, const SceneUpdate& update) {
+    for (const auto& [instance, transform] : update.placements) {
+        (void)state_->entry(instance);
+        check_transform(transform, instance);
+    }
+    for (const auto& [mesh, positions, normals] : update.vertices)
+        check_vertices(state_->mesh(mesh).place, mesh, std::span(positions), std::span(normals));
+    for (const auto& [mesh, positions, normals] : update.vertices)
+        write_vertices(queue, state_->tables, state_->mesh(mesh).place, positions, normals);
+    for (const auto& [instance, transform] : update.placements) set_transform(instance, transform);
+    commit(queue);
 }
 
 void DeviceScene::remove_mesh(std::uint32_t mesh) {

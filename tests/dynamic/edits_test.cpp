@@ -162,6 +162,31 @@ TEST_P(Edits, OfScenesWithoutNormalsAndColours) {
     EXPECT_THROW(scene.device().set_vertices(queue, 0, scene.device().positions()), setka::Error) << "its own table";
 }
 
+TEST_P(Edits, ApplyAnUpdateAsTheHostDoes) {
+    setka::Queue queue = device().make_queue();
+    setka::Scene host = dynamic::first_scene();
+    setka::DeviceScene scene(queue, host);
+    setka::SceneUpdate update;
+    Random random(5);
+    update.placements = {{1, dynamic::make_transform(random)}, {4, dynamic::make_transform(random)}};
+    update.vertices = {{2, host.meshes[2].positions, {}}};
+    for (setka::Float3& p : update.vertices[0].positions) p.y += 0.25f;
+    scene.apply(queue, update);
+    setka::apply(host, update);
+    expect_like_fresh(queue, scene, host);
+    // The last part is wrong: nothing of it is done.
+    const auto expected = setka::make_grid_builder()->build(queue, scene).digest(queue);
+    for (setka::Float3& p : update.vertices[0].positions) p.y += 1;
+    update.placements[0].transform = {};
+    update.placements.push_back({5, {}});
+    EXPECT_THROW(scene.apply(queue, update), setka::Error);
+    update.placements.pop_back();
+    update.vertices.push_back({0, {{1, 2, 3}}, {}});
+    EXPECT_THROW(scene.apply(queue, update), setka::Error);
+    EXPECT_TRUE(scene.is_committed());
+    EXPECT_EQ(setka::make_grid_builder()->build(queue, scene).digest(queue), expected);
+}
+
 /// Hits are of the structure, shading of the scene: they must be of one moment.
 TEST_P(Edits, EndPicturesThatHaveBegun) {
     setka::Queue queue = device().make_queue();
