@@ -25,6 +25,7 @@ namespace setka::io {
 void save_ply(const std::filesystem::path& file, const Scene& scene);
 
 /// Writes a picture by its extension: 8-bit sRGB for PNG, JPEG, TIFF, BMP, TGA and PPM; linear float for EXR, HDR and PFM.
+/// An 8-bit file needs no linear pixels.
 /// Nothing is left behind on failure. Throws InvalidArgument for an unknown extension or a file that cannot be written.
 void write_image(const std::filesystem::path& file, const Image& image);
 /// Throws what write_image would throw for this file, before the work is done.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What does a picture show, and from where? Options that `render` and `animate` share.
+/// What does a picture show, and from where? Options that `render`, `view` and `animate` share.
 #pragma once
 
 #include <CLI/CLI.hpp>

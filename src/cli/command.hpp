@@ -24,6 +24,7 @@ struct Command {
 [[nodiscard]] Command add_devices_command(CLI::App& program);
 [[nodiscard]] Command add_render_command(CLI::App& program);
 [[nodiscard]] Command add_animate_command(CLI::App& program);
+[[nodiscard]] Command add_view_command(CLI::App& program);
 [[nodiscard]] Command add_build_command(CLI::App& program);
 [[nodiscard]] Command add_trace_command(CLI::App& program);
 [[nodiscard]] Command add_verify_command(CLI::App& program);

@@ -48,8 +48,8 @@ int run(int argc, char** argv) {
     program.footer("Exit codes: 0 ok, 1 a check failed, 2 bad usage, input or device, 130 interrupted.");
     const std::array commands{
         setka::cli::add_devices_command(program), setka::cli::add_render_command(program),
-        setka::cli::add_animate_command(program), setka::cli::add_build_command(program),
-        setka::cli::add_trace_command(program),
+        setka::cli::add_animate_command(program), setka::cli::add_view_command(program),
+        setka::cli::add_build_command(program),   setka::cli::add_trace_command(program),
         setka::cli::add_verify_command(program),  setka::cli::add_validate_command(program),
         setka::cli::add_compare_command(program), setka::cli::add_scene_command(program),
     };

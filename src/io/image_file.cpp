@@ -38,9 +38,12 @@ const ImageFormat& format_of(const std::filesystem::path& file) {
             "; known are png, jpg, tif, bmp, tga and ppm (8-bit sRGB), exr, hdr and pfm (linear float)");
 }
 
-void check_pixels(const Image& image) {
+/// An 8-bit file takes nothing of the linear colours, which may have been left out.
+void check_pixels(const Image& image, Pixels pixels) {
     const std::size_t pixel_count = std::size_t(image.width) * image.height;
-    if (pixel_count == 0 || image.linear.size() != pixel_count || image.srgb.size() != pixel_count * 3)
+    const bool has_linear =
+        image.linear.size() == pixel_count || (pixels == Pixels::Srgb8 && image.linear.empty());
+    if (pixel_count == 0 || !has_linear || image.srgb.size() != pixel_count * 3)
         throw Error(ErrorCategory::InvalidArgument,
                     "image: " + std::to_string(image.width) + " x " + std::to_string(image.height) +
                         " pixels need as many linear colours (there are " +
@@ -90,7 +93,7 @@ void write_with_oiio(const std::filesystem::path& target, const std::filesystem:
 void write_image(const std::filesystem::path& file, const Image& image) {
     static_assert(sizeof(Float3) == 12, "rows of pixels are handed over as floats");
     const ImageFormat& format = format_of(file);
-    check_pixels(image);
+    check_pixels(image, format.pixels);
     if (format.extension == "pfm") {
         detail::PendingStream stream(file);
         write_pfm(stream, image);

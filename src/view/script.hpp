@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+/// What does a session without a person do? Commands, one a line: words with spaces between; what follows #
+/// is for readers.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "view/settings.hpp"
+
+namespace setka::view {
+
+struct WaitPasses {
+    std::uint32_t passes;
+};
+struct Move {
+    double forward = 0, right = 0, up = 0;
+};
+struct Turn {
+    double right_degrees, up_degrees;
+};
+struct ResetCamera {};
+struct SetDensity {
+    float density;
+};
+struct SetView {
+    View view;
+};
+struct SetStep {
+    GridStep step;
+};
+struct SetSamples {
+    std::uint32_t samples_per_axis;
+};
+struct SetDevice {
+    std::string id;
+};
+struct SetSize {
+    std::uint32_t width, height;
+};
+struct Screenshot {
+    std::string file;
+};
+struct SavePicture {
+    std::string file;
+};
+struct Report {};
+struct Quit {};
+
+struct Command {
+    std::string place;  ///< "session.txt, line 3: 'view steps'"
+    std::variant<WaitPasses, Move, Turn, ResetCamera, SetDensity, SetView, SetStep, SetSamples, SetDevice,
+                 SetSize, Screenshot, SavePicture, Report, Quit>
+        what;
+};
+
+/// Throws InvalidData that names file, line and command, and says what would be accepted.
+[[nodiscard]] std::vector<Command> read_script(const std::filesystem::path& file);
+
+/// The names of views and steps, as commands and command lines spell them.
+[[nodiscard]] const std::vector<std::pair<std::string, View>>& view_names();
+[[nodiscard]] const std::vector<std::pair<std::string, GridStep>>& step_names();
+
+}  // namespace setka::view
