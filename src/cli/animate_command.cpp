@@ -16,6 +16,7 @@
 #include "cli/options.hpp"
 #include "cli/progress.hpp"
 #include "cli/structure.hpp"
+#include "cli/text.hpp"
 #include "core/exact_math.hpp"
 #include "setka/device_scene.hpp"
 #include "setka/error.hpp"
@@ -108,13 +109,13 @@ class CameraPath {
     const auto point = [](const Float3& p) { return nlohmann::ordered_json{p.x, p.y, p.z}; };
     nlohmann::ordered_json files = nlohmann::ordered_json::array();
     for (const std::filesystem::path& file : footage.files())
-        files.push_back({file.string(), std::filesystem::file_size(file),
+        files.push_back({as_utf8(file.string()), std::filesystem::file_size(file),
                          std::chrono::duration_cast<std::chrono::nanoseconds>(
                              std::filesystem::last_write_time(file).time_since_epoch())
                              .count()});
     nlohmann::ordered_json settings{
         {"setka", version()},
-        {"scene", options.input.files},
+        {"scene", as_utf8(options.input.files)},
         {"triangles", options.input.triangles},
         {"animation", options.animation},
         {"size", fmt::format("{}x{}", options.render.width, options.render.height)},
@@ -135,6 +136,7 @@ class CameraPath {
                             options.render.trace.step == GridStep::Dda ? "dda" : "branch-free"};
     }
     settings["files"] = files;
+    settings["contents"] = footage.digest();
     return settings;
 }
 

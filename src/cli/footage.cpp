@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/digest.hpp"
 #include "setka/error.hpp"
 
 namespace setka::cli {
@@ -70,6 +71,19 @@ SceneUpdate Footage::at(const Moment& moment) const {
     return update;
 }
 
+std::pair<double, double> Footage::span() const {
+    if (kind() == io::MotionKind::None) return {0, 0};
+    if (kind() == io::MotionKind::Keyframes) return {0, animation_->duration_seconds()};
+    const std::uint32_t first = animation_->first_frame();
+    return {first, first + (animation_->frame_count() - 1)};
+}
+
+SceneUpdate Footage::at(double moment) const {
+    const auto [first, last] = span();
+    const double within = std::clamp(moment, first, last);
+    return at(Moment{static_cast<std::uint32_t>(within), within});
+}
+
 bool Footage::has_moving_camera() const {
     return kind() == io::MotionKind::Keyframes && animation_->at(0).camera.has_value();
 }
@@ -102,6 +116,64 @@ std::vector<Moment> Footage::moments(const MomentChoice& choice) const {
             "--from {:g} --to {:g}: there is no picture between; at {:g} a second they are {:g} s apart",
             choice.from.value_or(0), choice.to.value_or(0), rate, 1 / rate));
     return moments;
+}
+
+namespace {
+
+class SceneDigest {
+  public:
+    template <typename... Ts>
+    void add(const Ts&... values) {
+        (digester_.add(std::as_bytes(std::span(&values, 1))), ...);
+    }
+    template <typename T>
+    void add_list(const std::vector<T>& values) {
+        add(std::uint64_t(values.size()));
+        digester_.add(values);
+    }
+    void add_camera(const std::optional<Camera>& camera) {
+        add(std::uint64_t(camera.has_value()));
+        if (camera) add(camera->eye, camera->target, camera->up, camera->vertical_fov_degrees);
+    }
+    void add(const Scene& scene) {
+        for (const Mesh& mesh : scene.meshes) {
+            add_list(mesh.positions);
+            add_list(mesh.triangles);
+            add_list(mesh.normals);
+            add_list(mesh.colors);
+        }
+        for (const Instance& i : scene.instances) add(i.mesh, i.transform, i.material, i.mask);
+        for (const Material& m : scene.materials)
+            add(m.diffuse, m.specular, m.emission, m.shininess, m.reflectivity, m.transparency, m.transmission,
+                m.refractive_index);
+        add_list(scene.point_lights);
+        add_list(scene.directional_lights);
+        add_camera(scene.camera);
+        add(scene.background);
+    }
+    void add(const SceneUpdate& update) {
+        for (const SceneUpdate::Placement& placement : update.placements) add(placement.instance, placement.transform);
+        for (const SceneUpdate::Vertices& vertices : update.vertices) {
+            add_list(vertices.positions);
+            add_list(vertices.normals);
+        }
+        add_camera(update.camera);
+    }
+    [[nodiscard]] std::string text() const { return digester_.digest().to_string(); }
+
+  private:
+    Digester digester_;
+};
+
+}  // namespace
+
+std::string Footage::digest() const {
+    constexpr int poses = 32;
+    SceneDigest digest;
+    digest.add(scene_);
+    for (int i = 0; kind() == io::MotionKind::Keyframes && i <= poses; ++i)
+        digest.add(at(animation_->duration_seconds() * i / poses));
+    return digest.text();
 }
 
 Bounds Footage::bounds(const std::function<void(double)>& progress) const {

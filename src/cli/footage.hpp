@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/scene_input.hpp"
@@ -39,10 +40,17 @@ class Footage {
     /// every run: a sequence has the numbers of its files; a scene that stands still, one turn of the camera.
     /// Throws InvalidArgument for bounds that hold none.
     [[nodiscard]] std::vector<Moment> moments(const MomentChoice& choice) const;
+    /// The first and the last moment: numbers of frames in a sequence, else seconds. Equal where nothing moves.
+    [[nodiscard]] std::pair<double, double> span() const;
+    /// What stands where at a moment of that span; in a sequence, in the frame that has begun.
+    [[nodiscard]] SceneUpdate at(double moment) const;
     /// Around everything that ever moves: all frames of a sequence, 257 moments of an animation. `progress`
     /// is told the share that is done.
     [[nodiscard]] Bounds bounds(const std::function<void(double)>& progress) const;
     [[nodiscard]] const std::vector<std::filesystem::path>& files() const { return files_; }
+    /// A digest of everything that is seen at the first moment, and of where it is at 33 moments of an animation: what other files than
+    /// those of files(), such as buffers and materials, have a part in.
+    [[nodiscard]] std::string digest() const;
     /// The camera moves by itself.
     [[nodiscard]] bool has_moving_camera() const;
 

@@ -49,7 +49,7 @@ std::string film_as_json(const FilmReport& report) {
     nlohmann::ordered_json frames = nlohmann::ordered_json::array(), medians;
     for (const FrameReport& frame : report.frames) {
         nlohmann::ordered_json json{
-            {"number", frame.moment.number}, {"seconds", frame.moment.seconds}, {"file", frame.file}};
+            {"number", frame.moment.number}, {"seconds", frame.moment.seconds}, {"file", as_utf8(frame.file)}};
         if (frame.was_there) json["was_there"] = true;
         else
             for (const auto& [name, part] : parts) json[std::string(name) + "_ms"] = frame.times.*part;
@@ -58,7 +58,7 @@ std::string film_as_json(const FilmReport& report) {
     }
     for (const auto& [name, part] : parts)
         medians[std::string(name) + "_ms"] = workload::median(values_of(report, part));
-    const nlohmann::ordered_json json{{"output", report.output},
+    const nlohmann::ordered_json json{{"output", as_utf8(report.output)},
                                       {"width", report.width},
                                       {"height", report.height},
                                       {"device", report.device},

@@ -30,8 +30,10 @@ SampleSums::SampleSums(const Queue& queue, std::uint64_t pixels, std::uint32_t f
       is_on_device_(fits(queue.device(), pixels * floats_per_pixel * sizeof(float), passes > 1 ? 2 : 1)) {}
 
 void SampleSums::move_to_host() {
+    std::vector<float> sums;
+    if (has_sums_) sums = queue_.download(before_.on_device);  // this may fail; what follows may not
     is_on_device_ = false;
-    if (has_sums_) before_.on_host = queue_.download(before_.on_device);
+    before_.on_host = std::move(sums);
     before_.on_device = {};
     after_ = {};
 }

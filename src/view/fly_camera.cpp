@@ -24,6 +24,12 @@ Vector cross(const Vector& a, const Vector& b) {
 }
 Float3 rounded(const Vector& a) { return {float(a.x), float(a.y), float(a.z)}; }
 
+/// The target of an eye that looks this way: so far off that the two differ after rounding, however far the eye is.
+Float3 target_of(const Float3& eye, const Vector& forward, double distance) {
+    const Vector from = vector_of(eye);
+    return rounded(from + forward * std::max(distance, 0x1p-12 * length(from)));
+}
+
 /// `v` turned around the unit vector `axis` (Rodrigues).
 Vector turned(const Vector& v, const Vector& axis, double angle) {
     const double c = std::cos(angle), s = std::sin(angle);
@@ -47,7 +53,7 @@ void FlyCamera::move(double forward, double right, double up) {
     const Axes axes = axes_of(now_);
     const Vector step = axes.forward * forward + axes.right * right + axes.up * up;
     now_.eye = rounded(vector_of(now_.eye) + step);
-    now_.target = rounded(vector_of(now_.target) + step);
+    now_.target = target_of(now_.eye, axes.forward, axes.distance);
 }
 
 void FlyCamera::turn(double right_degrees, double up_degrees) {
@@ -56,7 +62,7 @@ void FlyCamera::turn(double right_degrees, double up_degrees) {
     const double height = std::acos(std::clamp(dot(axes.forward, axes.up), -1.0, 1.0));  // from the zenith
     const double lift = height - std::clamp(height - up_degrees * degree, least, std::numbers::pi - least);
     const Vector gaze = turned(turned(axes.forward, axes.right, lift), axes.up, -right_degrees * degree);
-    now_.target = rounded(vector_of(now_.eye) + gaze * axes.distance);
+    now_.target = target_of(now_.eye, gaze, axes.distance);
 }
 
 }  // namespace setka::view

@@ -69,6 +69,17 @@ void draw_picture_settings(Settings& settings, const PanelFacts& facts) {
                         settings.view == View::Steps ? "cells" : "tests", frame.statistics.heat_mean));
 }
 
+void draw_motion(Settings& settings, Play& play, const SceneMotion& motion) {
+    if (motion.is_still()) return;
+    heading("MOTION");
+    if (ImGui::Button(play.is_on ? "Pause" : "Play", {label_width - ImGui::GetStyle().ItemSpacing.x, 0})) play.is_on = !play.is_on;
+    ImGui::SameLine(label_width);
+    ImGui::SetNextItemWidth(-1);
+    const char* format = motion.unit == SceneMotion::Unit::Frames ? "frame %.0f" : "%.2f s";
+    if (ImGui::SliderScalar("##moment", ImGuiDataType_Double, &settings.moment, &motion.first, &motion.last, format))
+        play.is_on = false;
+}
+
 void draw_grid(Settings& settings, const Frame* frame) {
     heading("GRID");
     label("Density");
@@ -131,7 +142,7 @@ Wish draw_camera(const Settings& settings, const PanelFacts& facts) {
     if (ImGui::Button("Save PNG (P)", {half, 0})) wish = Wish::SavePicture;
     ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
     ImGui::TextWrapped(
-        "Fly with W A S D, down and up with Q and E; drag to look around, wheel for the speed.");
+        "Fly with W A S D, down and up with Q and E; drag to look around, wheel for the speed. The space bar plays and pauses motion.");
     ImGui::PopStyleColor();
     return wish;
 }
@@ -145,8 +156,8 @@ void History::add(float ms) {
 
 float History::maximum() const { return std::max(0.001f, *std::ranges::max_element(values_)); }
 
-Wish draw_panel(Settings& settings, const PanelFacts& facts, const std::vector<DeviceInfo>& devices,
-                int height) {
+Wish draw_panel(Settings& settings, Play& play, const PanelFacts& facts,
+                const std::vector<DeviceInfo>& devices, int height) {
     ImGui::SetNextWindowPos({0, 0});
     ImGui::SetNextWindowSize({float(panel_width), float(height)});
     ImGui::Begin("panel", nullptr,
@@ -154,13 +165,14 @@ Wish draw_panel(Settings& settings, const PanelFacts& facts, const std::vector<D
                      ImGuiWindowFlags_NoNav);
     say(facts.scene);
     draw_picture_settings(settings, facts);
+    if (facts.motion) draw_motion(settings, play, *facts.motion);
     draw_grid(settings, facts.frame);
     draw_devices(settings, devices);
     draw_times(facts);
     const Wish wish = draw_camera(settings, facts);
-    if (facts.frame && !facts.frame->trouble.empty()) {
+    if (!facts.trouble.empty()) {
         ImGui::PushStyleColor(ImGuiCol_Text, {1, 0.45f, 0.4f, 1});
-        ImGui::TextWrapped("%s", facts.frame->trouble.c_str());
+        ImGui::TextWrapped("%s", facts.trouble.c_str());
         ImGui::PopStyleColor();
     }
     if (!facts.message.empty()) ImGui::TextWrapped("%s", facts.message.c_str());

@@ -35,9 +35,10 @@ constexpr double show_every_ms = 60;
 
 }  // namespace
 
-RenderThread::RenderThread(Scene scene, const RenderThreadOptions& options, const Settings& first,
-                           std::function<void()> on_frame)
+RenderThread::RenderThread(Scene scene, SceneMotion motion, const RenderThreadOptions& options,
+                           const Settings& first, std::function<void()> on_frame)
     : scene_(std::move(scene)),
+      motion_(std::move(motion)),
       options_(options),
       on_frame_(std::move(on_frame)),
       world_(make_world(first)),
@@ -126,13 +127,14 @@ std::unique_ptr<RenderThread::World> RenderThread::make_world(const Settings& se
     Queue queue = device.make_queue();
     const auto start = Clock::now();
     DeviceScene scene(queue, scene_);
+    if (!motion_.is_still()) scene.apply(queue, motion_.at(settings.moment));
     queue.finish();
     const double upload_ms = ms_since(start);
     (void)queue.take_timings();
     Grid grid = build_grid(queue, scene, settings.density);
     const double build_ms = total_ms(queue.take_timings());
     return std::make_unique<World>(World{std::move(device), std::move(queue), std::move(scene),
-                                         std::move(grid), settings.density, upload_ms, build_ms});
+                                         std::move(grid), settings.density, settings.moment, upload_ms, build_ms});
 }
 
 std::string RenderThread::prepare(const Settings& settings) {
@@ -140,18 +142,42 @@ std::string RenderThread::prepare(const Settings& settings) {
         if (world_->device.info().id != settings.device) {
             world_ = make_world(settings);
             ms_a_pixel_ = 0;
-        } else if (world_->density != settings.density) {
-            World& world = *world_;
-            world.queue.set_stop_token({});
-            (void)world.queue.take_timings();
-            world.grid = build_grid(world.queue, world.scene, settings.density);
-            world.density = settings.density;
-            world.build_ms = total_ms(world.queue.take_timings());
+            return {};
         }
+        world_->queue.set_stop_token({});
+        if (world_->moment != settings.moment && !motion_.is_still()) move(*world_, settings.moment);
+        if (world_->density != settings.density) rebuild(*world_, settings.density);
         return {};
     } catch (const Error& error) {
         return error.what();
     }
+}
+
+void RenderThread::rebuild(World& world, float density) const {
+    (void)world.queue.take_timings();
+    world.grid = build_grid(world.queue, world.scene, density);
+    world.density = density;
+    world.build_ms = total_ms(world.queue.take_timings());
+}
+
+double RenderThread::pose(World& world, double moment) const {
+    const SceneUpdate update = motion_.at(moment);
+    const auto start = Clock::now();
+    world.scene.apply(world.queue, update);
+    world.queue.finish();
+    return ms_since(start);
+}
+
+void RenderThread::move(World& world, double moment) const {
+    const double upload_ms = pose(world, moment);
+    try {
+        rebuild(world, world.density);
+    } catch (const Error&) {
+        (void)pose(world, world.moment);  // which the grid is still of
+        throw;
+    }
+    world.moment = moment;
+    world.upload_ms = upload_ms;
 }
 
 Frame RenderThread::frame_of(const Order& order, const std::string& trouble) const {
@@ -165,6 +191,7 @@ Frame RenderThread::frame_of(const Order& order, const std::string& trouble) con
     frame.facts.device = world.device.info().id;
     frame.facts.device_name = world.device.info().name;
     frame.facts.density = world.density;
+    frame.facts.moment = world.moment;
     frame.facts.triangles = header.triangle_count;
     std::copy_n(header.dims, 3, frame.facts.dims);
     frame.facts.cells = header.cell_count;

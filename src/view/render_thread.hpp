@@ -29,7 +29,7 @@ class RenderThread {
   public:
     /// Opens the settings' device and builds the grid at once, and throws what that throws. `on_frame` is
     /// called by the thread whenever there is another picture.
-    RenderThread(Scene scene, const RenderThreadOptions& options, const Settings& first,
+    RenderThread(Scene scene, SceneMotion motion, const RenderThreadOptions& options, const Settings& first,
                  std::function<void()> on_frame);
     ~RenderThread();
     RenderThread(const RenderThread&) = delete;
@@ -54,6 +54,7 @@ class RenderThread {
         DeviceScene scene;
         Grid grid;
         float density;
+        double moment;
         double upload_ms, build_ms;
     };
 
@@ -76,7 +77,14 @@ class RenderThread {
     /// A frame without a picture.
     void publish_trouble(const Order& order, const std::exception& error);
 
-    Scene scene_;
+    /// Moves scene and grid to a moment. If that fails, they are as they were.
+    void move(World& world, double moment) const;
+    /// The scene's, in milliseconds.
+    double pose(World& world, double moment) const;
+    void rebuild(World& world, float density) const;
+
+    Scene scene_;  ///< at its first moment
+    SceneMotion motion_;
     RenderThreadOptions options_;
     std::function<void()> on_frame_;
     std::unique_ptr<World> world_;

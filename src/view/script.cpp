@@ -100,6 +100,10 @@ const std::vector<Syntax>& syntaxes() {
         {"move", "forward|right|up DISTANCE", 3, read_move},
         {"turn", "DEGREES_RIGHT DEGREES_UP", 3, read_turn},
         {"reset", "", 1, [](const Words&) { return ResetCamera{}; }},
+        {"moment", "NUMBER", 2,
+         [](const Words& words) {
+             return SetMoment{number(words[1], 0.0, 1e9, "seconds, or the number of a sequence's frame")};
+         }},
         {"density", "CELLS", 2,
          [](const Words& words) {
              return SetDensity{number(words[1], 1e-6f, 1e6f, "cells a triangle from 1e-6 to 1e6")};

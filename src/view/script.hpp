@@ -22,6 +22,9 @@ struct Turn {
     double right_degrees, up_degrees;
 };
 struct ResetCamera {};
+struct SetMoment {
+    double moment;
+};
 struct SetDensity {
     float density;
 };
@@ -51,7 +54,7 @@ struct Quit {};
 
 struct Command {
     std::string place;  ///< "session.txt, line 3: 'view steps'"
-    std::variant<WaitPasses, Move, Turn, ResetCamera, SetDensity, SetView, SetStep, SetSamples, SetDevice,
+    std::variant<WaitPasses, Move, Turn, ResetCamera, SetMoment, SetDensity, SetView, SetStep, SetSamples, SetDevice,
                  SetSize, Screenshot, SavePicture, Report, Quit>
         what;
 };

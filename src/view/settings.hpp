@@ -4,18 +4,31 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "setka/grid.hpp"
 #include "setka/renderer.hpp"
+#include "setka/scene.hpp"
 
 namespace setka::view {
+
+/// How a scene moves.
+struct SceneMotion {
+    double first = 0, last = 0;  ///< moments: seconds, or numbers of frames; equal where nothing moves
+    enum class Unit { Seconds, Frames } unit = Unit::Seconds;
+    /// What stands where at a moment; called by the thread that renders.
+    std::function<SceneUpdate(double)> at;
+
+    [[nodiscard]] bool is_still() const { return first == last; }
+};
 
 /// What one wishes to see. A change of any of it is another picture.
 struct Settings {
     Float3 eye, target, up;
     float vertical_fov_degrees = 50;
     std::string device;  ///< an id; to begin with whatever Device::open takes
+    double moment = 0;    ///< of the scene's motion
     float density = 8;
     View view = View::Shaded;
     GridStep step = GridStep::Dda;
@@ -42,6 +55,7 @@ struct StageTimes {
 struct Facts {
     std::string device, device_name;
     float density = 0;
+    double moment = 0;
     std::uint32_t triangles = 0, dims[3] = {0, 0, 0};
     std::uint64_t cells = 0, pairs = 0, structure_bytes = 0, device_bytes = 0;
 };

@@ -31,6 +31,8 @@ double seconds_since(Clock::time_point start) {
 
 /// How long after the last change things count as still, and how long scripts wait for what may never come.
 constexpr double still_after_s = 0.15, resize_limit_s = 10, wait_limit_s = 600;
+/// Of a sequence, which does not say.
+constexpr double frames_a_second = 24;
 
 enum class Input { Person, Script };
 enum class Shown { OnScreen, Captured };
@@ -46,8 +48,9 @@ WindowSize window_size_for(std::uint32_t width, std::uint32_t height) {
     return {static_cast<int>(width) + panel_width, static_cast<int>(height)};
 }
 
-Settings with_camera(Settings settings, const Camera& camera) {
+Settings first_settings(Settings settings, const Camera& camera, const SceneMotion& motion) {
     settings.look_through(camera);
+    settings.moment = motion.first;
     return settings;
 }
 
@@ -61,15 +64,16 @@ double diagonal(const Bounds& bounds) {
 /// A window with its scene, until it is closed.
 class Session {
   public:
-    Session(const ViewerOptions& options, Input input, Window& window, Scene scene, const Camera& camera)
+    Session(const ViewerOptions& options, Input input, Window& window, MovingScene shown, const Camera& camera)
         : input_(input),
           window_(window),
           scene_name_(options.scene_name),
           devices_(enumerate_devices()),
           fly_(camera),
-          speed_(diagonal(scene.bounds()) / 5),
-          settings_(with_camera(options.settings, camera)),
-          renders_(std::move(scene), options.rendering, settings_, Window::wake) {
+          speed_(diagonal(shown.scene.bounds()) / 5),
+          scene_motion_(shown.motion),
+          settings_(first_settings(options.settings, camera, scene_motion_)),
+          renders_(std::move(shown.scene), std::move(shown.motion), options.rendering, settings_, Window::wake) {
         settings_.device = renders_.first_device();
         follow_window();
         asked_ = settings_;
@@ -115,8 +119,26 @@ class Session {
             speed_ *= std::pow(1.2, double(io.MouseWheel));
         }
         if (window_.is_down('R')) fly_.reset();
+        if (window_.is_down(' ') && !was_toggling_) play_.is_on = !play_.is_on;
+        was_toggling_ = window_.is_down(' ');
         if (window_.is_down('P') && !was_saving_) save_numbered();
         was_saving_ = window_.is_down('P');
+    }
+
+    /// Goes on in the scene's motion, from its end to its beginning. A sequence changes when its next frame begins.
+    void play() {
+        if (scene_motion_.is_still()) return;
+        const bool has_frames = scene_motion_.unit == SceneMotion::Unit::Frames;
+        if (play_.is_on) {
+            const double length = scene_motion_.last - scene_motion_.first + (has_frames ? 1 : 0);
+            const double step = double(ImGui::GetIO().DeltaTime) * (has_frames ? frames_a_second : 1.0);
+            const double on = play_.moment - scene_motion_.first + step;
+            play_.moment = scene_motion_.first + (on < length ? on : std::fmod(on, length));
+            settings_.moment = has_frames ? std::floor(play_.moment) : play_.moment;
+        } else {
+            if (has_frames) settings_.moment = std::round(settings_.moment);
+            play_.moment = settings_.moment;
+        }
     }
 
     /// Takes the newest picture, if there is another.
@@ -130,15 +152,21 @@ class Session {
             history_.add(static_cast<float>(newest->times.trace + newest->times.shade));
         }
         frame_ = newest;
+        if (!frame_->trouble.empty()) trouble_ = frame_->trouble;
         if (frame_->trouble.empty() || frame_->order != order_) return;
         // What is not in effect is not shown as if it were.
         settings_.device = asked_.device = frame_->facts.device;
         settings_.density = asked_.density = frame_->facts.density;
+        settings_.moment = asked_.moment = frame_->facts.moment;
+        play_.is_on = false;
     }
 
     void ask() {
         const bool is_changed = settings_ != asked_;
-        if (is_changed) changed_ = Clock::now();
+        if (is_changed) {
+            changed_ = Clock::now();
+            trouble_.clear();  // until then it stays, though pictures without trouble follow
+        }
         const bool is_moving = input_ == Input::Person && seconds_since(changed_) < still_after_s;
         const Motion motion = is_moving ? Motion::Moving : Motion::Still;
         if (!is_changed && motion == motion_) return;
@@ -155,11 +183,12 @@ class Session {
         const auto start = Clock::now();
         follow_window();
         if (input_ == Input::Person) fly();
+        play();
         settings_.look_through(fly_.camera());
         take_frame();
         const WindowSize size = window_.size();
         const Wish wish =
-            draw_panel(settings_, {scene_name_, frame_.get(), show_ms_, &history_, speed_, message_},
+            draw_panel(settings_, play_, {scene_name_, frame_.get(), &scene_motion_, show_ms_, &history_, speed_, trouble_, message_},
                        devices_, size.height);
         if (wish == Wish::ResetCamera) fly_.reset();
         if (wish == Wish::SavePicture) save_numbered();
@@ -214,6 +243,13 @@ class Session {
     void obey(const Move& move) { fly_.move(move.forward, move.right, move.up); }
     void obey(const Turn& turn) { fly_.turn(turn.right_degrees, turn.up_degrees); }
     void obey(const ResetCamera&) { fly_.reset(); }
+    void obey(const SetMoment& set) {
+        if (!(set.moment >= scene_motion_.first && set.moment <= scene_motion_.last))
+            throw Error(ErrorCategory::InvalidArgument,
+                        scene_motion_.is_still() ? std::string("nothing moves in this scene")
+                                           : fmt::format("accepted is a moment from {:g} to {:g}", scene_motion_.first, scene_motion_.last));
+        settings_.moment = set.moment;
+    }
     void obey(const SetDensity& set) { settings_.density = set.density; }
     void obey(const SetView& set) { settings_.view = set.view; }
     void obey(const SetStep& set) { settings_.step = set.step; }
@@ -244,6 +280,7 @@ class Session {
                                                   {"view", name_of(settings_.view, view_names())},
                                                   {"step", name_of(settings_.step, step_names())},
                                                   {"density", frame.facts.density},
+                                                  {"moment", frame.facts.moment},
                                                   {"triangles", frame.facts.triangles},
                                                   {"cells", frame.facts.cells},
                                                   {"pairs", frame.facts.pairs},
@@ -264,6 +301,8 @@ class Session {
     std::vector<DeviceInfo> devices_;
     FlyCamera fly_;
     double speed_;
+    SceneMotion scene_motion_;
+    Play play_;
     Settings settings_, asked_;
     Motion motion_ = Motion::Still;
     Clock::time_point changed_ = Clock::now() - std::chrono::seconds(1);
@@ -272,8 +311,8 @@ class Session {
     std::shared_ptr<const Frame> frame_;
     History history_;
     double show_ms_ = 0;
-    std::string message_;
-    bool was_saving_ = false;
+    std::string trouble_, message_;
+    bool was_saving_ = false, was_toggling_ = false;
 };
 
 }  // namespace
@@ -283,12 +322,13 @@ void run_viewer(const ViewerOptions& options) {
     if (options.script) commands = read_script(*options.script);
     Window window(window_size_for(options.settings.width, options.settings.height),
                   options.scene_name + " - setka");
-    Scene scene = options.load();
+    MovingScene shown = options.load();
+    Scene& scene = shown.scene;
     scene.validate();
     const Camera camera =
         options.choose_camera(scene, float(options.settings.width) / float(options.settings.height));
     if (scene.point_lights.empty() && scene.directional_lights.empty()) add_default_lights(scene, camera);
-    Session session(options, options.script ? Input::Script : Input::Person, window, std::move(scene),
+    Session session(options, options.script ? Input::Script : Input::Person, window, std::move(shown),
                     camera);
     if (options.script) session.run_script(commands);
     else session.run_for_person();

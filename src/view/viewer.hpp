@@ -11,9 +11,15 @@
 
 namespace setka::view {
 
+/// A scene at its first moment, and how it moves.
+struct MovingScene {
+    Scene scene;
+    SceneMotion motion;
+};
+
 struct ViewerOptions {
     std::string scene_name;
-    std::function<Scene()> load;  ///< called once there is a window
+    std::function<MovingScene()> load;  ///< called once there is a window
     std::function<Camera(const Scene&, float aspect)> choose_camera;
     Settings settings;  ///< what to begin with; the camera is chosen
     RenderThreadOptions rendering;

@@ -1,7 +1,7 @@
 # Helpers of the tests beside this file.
 
 file(MAKE_DIRECTORY ${FOLDER})
-set(tiny --size=32 --elements=1000 --benchmark_min_time=0.001)
+set(tiny --size=32 --picture=48x32 --elements=1000 --benchmark_min_time=0.001)
 
 # Writes the golden row of spheres:2000 to a file. Sets `skipped`, after saying why, where there is no device.
 macro(write_golden file)

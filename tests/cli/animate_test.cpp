@@ -213,6 +213,14 @@ TEST(Animate, DoesNotMixPicturesOfOtherOptions) {
     std::filesystem::last_write_time(films / "scene.gltf", time + std::chrono::seconds(5));
     refuses({"--fps", "2"}, {"files"});
     std::filesystem::last_write_time(films / "scene.gltf", time);
+    // What lies in another file, as keys and vertices do here, counts as well.
+    std::string buffer = read_file(films / "scene.bin");
+    buffer[10] = static_cast<char>(buffer[10] ^ 1);
+    write_file(films / "scene.bin", buffer);
+    refuses({"--fps", "2"}, {"contents"});
+    buffer[10] = static_cast<char>(buffer[10] ^ 1);
+    write_file(films / "scene.bin", buffer);
+    EXPECT_EQ(run(films.animate("scene.gltf", {"--fps", "2", "--resume"})).exit_code, 0);
     // A new run forgets what was there, even where it makes less.
     (void)run_json(films.animate("scene.gltf", {"--fps", "2", "--to", "0"}));
     const json report = run_json(films.animate("scene.gltf", {"--fps", "2", "--resume"}));
@@ -220,6 +228,15 @@ TEST(Animate, DoesNotMixPicturesOfOtherOptions) {
     EXPECT_FALSE(report["frames"][1].contains("was_there"));
     std::filesystem::remove(state);
     refuses({"--fps", "2"}, {"000.png", "is there, but not", ".state"});
+}
+
+TEST(Animate, TakesNamesThatAreNoUtf8) {
+    SETKA_NEED_DEVICE();
+    const Films films;
+    std::filesystem::copy(films / "flap7.ply", films / "caf\xe9.ply");
+    const json report = run_json(films.animate("caf\xe9.ply", {"--fps", "0.2"}));
+    EXPECT_EQ(report["frames"].size(), 2u);
+    EXPECT_EQ(run(films.animate("caf\xe9.ply", {"--fps", "0.2", "--resume"})).exit_code, 0);
 }
 
 TEST(Animate, IsInterruptedBetweenWholePictures) {

@@ -127,7 +127,8 @@ Work editing(const std::string& name) {
                     .add(queue.download(before.geometry().instances))
                     .add(queue.download(builder->build(queue, scene).geometry().triangles))
                     .get();
-            }};
+            },
+            Work::OnOutOfMemory::MayRecover};  // a table that cannot grow by half grows by what is needed
 }
 
 Work tracing_from_host(const std::string& name) {

@@ -84,9 +84,10 @@ class View : public ::testing::Test {
 
     /// What `setka view` does with these commands; files are in folder().
     [[nodiscard]] Outcome play(const std::string& commands, const Words& options = {},
-                               std::vector<std::pair<std::string, std::string>> environment = {}) const {
+                               std::vector<std::pair<std::string, std::string>> environment = {},
+                               const std::string& scene = "torus") const {
         write_file(path("session"), commands);
-        Words words{"view", "torus", "--size", "320x240", "--samples", "2", "--script", path("session")};
+        Words words{"view", scene, "--size", "320x240", "--samples", "2", "--script", path("session")};
         words.insert(words.end(), options.begin(), options.end());
         environment.emplace_back("DISPLAY", display_->name());
         environment.emplace_back("LIBGL_ALWAYS_SOFTWARE", "1");
@@ -117,6 +118,48 @@ nlohmann::json line(const Outcome& outcome, int number) {
     std::string text;
     for (int i = 0; i <= number; ++i) std::getline(lines, text);
     return nlohmann::json::parse(text);
+}
+
+/// A triangle that folds from frame to frame.
+void write_flap(const std::string& file, int frame) {
+    write_file(file,
+               "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float "
+               "z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n"
+               "-1 0 0\n1 0 0\n0 " +
+                   std::to_string(1 - 0.2 * frame) + " " + std::to_string(0.3 * frame) +
+                   "\n0 -1 0\n3 0 1 2\n3 1 0 3\n");
+}
+
+/// Moments of a sequence, forward and back, have the pictures that animate makes of them.
+TEST_F(View, ShowsTheMomentsOfAMovingScene) {
+    for (const int frame : {3, 4, 5}) write_flap(path("flap" + std::to_string(frame) + ".ply"), frame);
+    const Words camera{"--eye", "0.3,0.4,3", "--target", "0,0,0"};
+    Words film{"animate", path("flap%d.ply"), "-o", path("film%d.ppm"), "--size", "320x240", "--samples", "2"};
+    film.insert(film.end(), camera.begin(), camera.end());
+    const Outcome made = run(film);
+    ASSERT_EQ(made.exit_code, 0) << made.errors;
+    std::string session = "wait passes 4\nsave " + path("0.ppm") + "\n";
+    for (const int frame : {5, 4, 3, 5})
+        session += "moment " + std::to_string(frame) + "\nwait passes 4\nreport\nsave " + path("at") +
+                   std::to_string(frame) + ".ppm\n";
+    session += "screenshot " + path("window.ppm") + "\n";
+    const Outcome seen = play(session, camera, {}, path("flap%d.ply"));
+    ASSERT_EQ(seen.exit_code, 0) << seen.errors;
+    EXPECT_TRUE(equal(read_ppm(path("0.ppm")), read_ppm(path("film3.ppm"))));
+    for (const int frame : {3, 4, 5})
+        EXPECT_TRUE(equal(read_ppm(path("at" + std::to_string(frame) + ".ppm")),
+                          read_ppm(path("film" + std::to_string(frame) + ".ppm"))))
+            << frame;
+    EXPECT_FALSE(equal(read_ppm(path("film3.ppm")), read_ppm(path("film5.ppm")))) << "nothing moves";
+    EXPECT_EQ(line(seen, 1)["moment"], 4);
+    EXPECT_TRUE(equal(picture_in("window.ppm"), read_ppm(path("film5.ppm"))));
+
+    const Outcome beyond = play("moment 6\n", camera, {}, path("flap%d.ply"));
+    EXPECT_EQ(beyond.exit_code, 2);
+    EXPECT_THAT(beyond.errors, ::testing::HasSubstr("accepted is a moment from 3 to 5"));
+    const Outcome still = play("moment 1\n");
+    EXPECT_EQ(still.exit_code, 2);
+    EXPECT_THAT(still.errors, ::testing::HasSubstr("nothing moves"));
 }
 
 TEST_F(View, TheWindowShowsWhatRenderWrites) {
