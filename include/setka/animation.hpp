@@ -80,7 +80,7 @@ class Animation {
 class GifFile {
   public:
     /// Throws InvalidArgument if the file cannot be written or does not end with .gif. GIF counts in hundredths of a second:
-    /// the time a picture is shown is rounded to them.
+    /// the time a picture is shown is rounded to them, and must be 1 to 65535, so 0.001526 to 200 pictures a second.
     GifFile(const std::filesystem::path& file, double frames_per_second);
     ~GifFile();
     GifFile(const GifFile&) = delete;

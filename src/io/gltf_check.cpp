@@ -21,6 +21,8 @@ constexpr std::uint64_t max_accessor_count = std::uint64_t(1) << 28;
 constexpr std::size_t max_node_depth = 256;
 /// Of all primitives that a skin moves; assimp takes a kilobyte for each.
 constexpr std::size_t max_joints = std::size_t(1) << 20;
+/// Of all copies of meshes that further nodes need.
+constexpr std::size_t max_copied_targets = std::size_t(1) << 20;
 
 class GltfChecker {
   public:
@@ -107,7 +109,7 @@ class GltfChecker {
             available = container_.binary->size();
         } else if (const std::string uri = buffer["uri"].get<std::string>(); uri.starts_with("data:")) {
             const std::size_t comma = uri.find(',');
-            if (comma == uri.npos || uri.compare(comma - 7, 7, ";base64") != 0)
+            if (comma == uri.npos || !std::string_view(uri).substr(0, comma).ends_with(";base64"))
                 fail_read(file_, "malformed glTF: " + what + " is a data URI that is not base64");
             const std::size_t digits = std::min(uri.find('=', comma), uri.size()) - comma - 1;
             available = digits * 3 / 4;
@@ -235,44 +237,59 @@ class GltfChecker {
             demand(component == 5126 && accessor["type"] == "VEC3", "three floats, as it must be");
     }
 
-    /// A skinned mesh is a mesh of its own for each of its nodes: assimp keeps one skin a mesh. So is one with
-    /// morph targets, whose weights are a node's.
+    /// A skinned mesh is a mesh of its own for each of its nodes: assimp keeps one skin a mesh. So is one
+    /// with morph targets, whose weights are a node's.
     void separate_skinned_meshes() {
         std::vector<bool> taken(size("meshes"));
-        std::size_t joints = 0;
+        std::vector<std::size_t> targets;  // of each mesh
+        for (std::size_t i = 0; i < size("meshes"); ++i) targets.push_back(target_count(json_["meshes"][i]));
+        std::size_t joints = 0, copied_targets = 0;
         for (const bool skinned : {false, true})
             for (std::size_t i = 0; i < size("nodes"); ++i) {
                 Json& node = json_["nodes"][i];
                 if (!node.contains("mesh") || node.contains("skin") != skinned) continue;
-                const Json mesh = target(node, "mesh", "meshes");
+                const Json& mesh = target(node, "mesh", "meshes");
                 const auto index = node["mesh"].get<std::size_t>();
                 if (skinned) joints += joint_count(node, mesh);
                 if (joints > max_joints)
                     fail_read(file_, "its skins have more than 2^20 joints, counted for each primitive");
-                if ((skinned || has_targets(mesh)) && taken[index]) {
+                if ((skinned || targets[index] > 0) && taken[index]) {
+                    copied_targets += targets[index];
+                    if (copied_targets > max_copied_targets)
+                        fail_read(file_,
+                                  "its nodes share meshes with more than 2^20 morph targets, counted for "
+                                  "each node after the first");
                     node["mesh"] = size("meshes");
-                    json_["meshes"].push_back(mesh);
+                    json_["meshes"].push_back(Json(mesh));
                 }
                 taken[index] = true;
             }
     }
 
-    [[nodiscard]] static bool has_targets(const Json& mesh) {
-        return std::ranges::any_of(mesh.value("primitives", Json::array()), [](const Json& primitive) {
-            return !primitive.value("targets", Json::array()).empty();
-        });
+    /// How many elements a list has; none if it is missing.
+    [[nodiscard]] static std::size_t length(const Json& object, const char* key) {
+        const auto found = object.find(key);
+        return found == object.end() ? 0 : found->size();
+    }
+
+    /// The morph targets of all primitives.
+    [[nodiscard]] static std::size_t target_count(const Json& mesh) {
+        std::size_t count = 0;
+        if (const auto primitives = mesh.find("primitives"); primitives != mesh.end())
+            for (const Json& primitive : *primitives) count += length(primitive, "targets");
+        return count;
     }
 
     [[nodiscard]] std::size_t joint_count(const Json& node, const Json& mesh) const {
-        return mesh.value("primitives", Json::array()).size() *
-               target(node, "skin", "skins").value("joints", Json::array()).size();
+        return length(mesh, "primitives") * length(target(node, "skin", "skins"), "joints");
     }
 
     void check_skin(Json& skin, std::size_t index) {
         const std::string what = "skin " + std::to_string(index);
         const Json joints = skin.value("joints", Json::array());
         // assimp never frees an array of none.
-        if (joints.empty()) fail_read(file_, "malformed glTF: " + what + " has no joints; at least one is needed");
+        if (joints.empty())
+            fail_read(file_, "malformed glTF: " + what + " has no joints; at least one is needed");
         for (const Json& joint : joints) {
             const auto node = joint.get<std::size_t>();
             (void)element(node, "nodes");

@@ -39,23 +39,26 @@ GltfDeformer::GltfDeformer(const GltfDocument& document, const GltfPart& part, c
     const bool has_targets = !primitive.value("targets", Json::array()).empty();
     if (!has_skin && !has_targets) return;
     const Json& attributes = primitive["attributes"];
-    const GltfNumbers raw = document.numbers(attributes["POSITION"].get<std::uint64_t>(), "VEC3");
+    const std::size_t count = document.numbers(attributes["POSITION"].get<std::uint64_t>(), "VEC3")->count;
     for (const std::uint32_t source : *sources_)
-        if (source >= raw.count) fail(" has " + std::to_string(raw.count) + " positions; more were read");
+        if (source >= count) fail(" has " + std::to_string(count) + " positions; more were read");
     triangles_ = mesh.triangles;
-    positions_ = vectors(attributes["POSITION"].get<std::uint64_t>(), raw.count);
+    positions_ = vectors(attributes["POSITION"].get<std::uint64_t>(), count);
     if (part.normals_from == NormalsFrom::Faces) recipe_ = normal_recipe(mesh, *sources_);
-    else normals_ = vectors(attributes["NORMAL"].get<std::uint64_t>(), raw.count);
-    if (has_targets) read_targets(primitive, raw.count);
-    if (has_skin) read_skin(primitive, raw.count);
+    else normals_ = vectors(attributes["NORMAL"].get<std::uint64_t>(), count);
+    if (has_targets) read_targets(primitive, count);
+    if (has_skin) read_skin(primitive, count);
 }
 
 /// The values of an accessor for the vertices as they are in the scene.
 std::vector<Float3> GltfDeformer::vectors(std::uint64_t accessor, std::size_t raw_count) const {
-    const GltfNumbers raw = document_->numbers(accessor, "VEC3");
+    const std::shared_ptr<const GltfNumbers> numbers = document_->numbers(accessor, "VEC3");
+    const GltfNumbers& raw = *numbers;
     if (raw.count != raw_count)
         fail(": accessor " + std::to_string(accessor) + " has " + std::to_string(raw.count) +
              " elements, but there are " + std::to_string(raw_count) + " vertices");
+    document_->charge(sources_->size() * sizeof(Float3),
+                      what_ + ", for accessor " + std::to_string(accessor) + ",");
     std::vector<Float3> list;
     list.reserve(sources_->size());
     for (const std::uint32_t source : *sources_) {
@@ -79,27 +82,28 @@ void GltfDeformer::read_skin(const Json& primitive, std::size_t raw_count) {
     const Json& skin =
         document_->element("skins", document_->element("nodes", node_)["skin"].get<std::uint64_t>());
     for (const Json& joint : skin["joints"]) joints_.push_back(joint.get<std::size_t>());
-    const GltfNumbers binds = document_->numbers(skin["inverseBindMatrices"].get<std::uint64_t>(), "MAT4");
+    const auto binds = document_->numbers(skin["inverseBindMatrices"].get<std::uint64_t>(), "MAT4");
     for (std::size_t i = 0; i < joints_.size(); ++i) {
         // Columns of four, whose last row is 0 0 0 1 by definition.
         Rows rows;
-        for (std::size_t k = 0; k < 12; ++k) rows[k] = binds.values[i * 16 + k % 4 * 4 + k / 4];
+        for (std::size_t k = 0; k < 12; ++k) rows[k] = binds->values[i * 16 + k % 4 * 4 + k / 4];
         inverse_binds_.push_back(rows);
     }
     const Json& attributes = primitive["attributes"];
+    document_->charge(sources_->size() * sizeof(Influence), what_ + ", for its joints,");
     influences_.resize(sources_->size());
     if (!attributes.contains("JOINTS_0") || !attributes.contains("WEIGHTS_0"))
         return;  // all move with their node
-    const GltfNumbers joints = document_->numbers(attributes["JOINTS_0"].get<std::uint64_t>(), "VEC4");
-    const GltfNumbers weights = document_->numbers(attributes["WEIGHTS_0"].get<std::uint64_t>(), "VEC4");
-    if (joints.count != raw_count || weights.count != raw_count)
+    const auto joints = document_->numbers(attributes["JOINTS_0"].get<std::uint64_t>(), "VEC4");
+    const auto weights = document_->numbers(attributes["WEIGHTS_0"].get<std::uint64_t>(), "VEC4");
+    if (joints->count != raw_count || weights->count != raw_count)
         fail(" has other counts of joints or weights than of vertices");
     for (std::size_t v = 0; v < influences_.size(); ++v) {
         const std::uint32_t source = (*sources_)[v];
         Influence& influence = influences_[v];
         for (std::size_t i = 0; i < 4; ++i) {
-            const double weight = weights.values[std::size_t(source) * 4 + i],
-                         joint = joints.values[std::size_t(source) * 4 + i];
+            const double weight = weights->values[std::size_t(source) * 4 + i],
+                         joint = joints->values[std::size_t(source) * 4 + i];
             if (!(weight > 0)) continue;
             if (!(joint < double(joints_.size())))
                 fail(": vertex " + std::to_string(source) + " hangs on joint " +

@@ -76,7 +76,34 @@ std::string decode_base64(std::string_view text) {
     return bytes;
 }
 
+void find_faults(GltfNumbers& numbers) {
+    const std::vector<double>& values = numbers.values;
+    numbers.first_not_finite = numbers.first_no_time = values.size();
+    for (std::size_t i = values.size(); i-- > 0;) {
+        const bool is_finite = std::isfinite(values[i]);
+        if (!is_finite) numbers.first_not_finite = i;
+        if (!is_finite || values[i] < 0 || (i && values[i] < values[i - 1])) numbers.first_no_time = i;
+    }
+}
+
 }  // namespace
+
+GltfDocument::GltfDocument(std::filesystem::path file, Json json, std::optional<std::string> binary,
+                           std::uint64_t min_budget)
+    : file_(std::move(file)), json_(std::move(json)), binary_(std::move(binary)), budget_bytes_(min_budget) {
+    std::uint64_t buffer_bytes = 0;
+    for (const Json& buffer : list("buffers")) buffer_bytes += buffer["byteLength"].get<std::uint64_t>();
+    budget_bytes_ = std::max(budget_bytes_, budget_per_byte * buffer_bytes);
+}
+
+void GltfDocument::charge(std::uint64_t size_bytes, const std::string& what) const {
+    if (size_bytes > budget_bytes_ - charged_bytes_)
+        fail_read(file_, what + " takes " + std::to_string(size_bytes) + " bytes beside " +
+                             std::to_string(charged_bytes_) +
+                             " of other animations, skins and morph targets; together they may take " +
+                             std::to_string(budget_bytes_) + " in a file with buffers of this size");
+    charged_bytes_ += size_bytes;
+}
 
 const Json& GltfDocument::list(const char* key) const {
     static const Json none = Json::array();
@@ -125,17 +152,27 @@ std::vector<double> GltfDocument::read(const Json& user, std::size_t count, std:
     return values;
 }
 
-GltfNumbers GltfDocument::numbers(std::uint64_t index, const char* type) const {
+std::shared_ptr<const GltfNumbers> GltfDocument::numbers(std::uint64_t index, const char* type) const {
     const Json& accessor = element("accessors", index);
     const std::string what = "accessor " + std::to_string(index);
     if (accessor.value("type", std::string()) != type)
         fail_read(file_, what + " is of type " + accessor.value("type", std::string()) + "; " + type +
                              " is needed here");
+    std::shared_ptr<const GltfNumbers>& decoded = decoded_[index];
+    if (!decoded) {
+        const std::size_t width = width_of(type);
+        charge(accessor["count"].get<std::uint64_t>() * width * sizeof(double), what);
+        decoded = std::make_shared<const GltfNumbers>(decode(accessor, width, what));
+    }
+    return decoded;
+}
+
+GltfNumbers GltfDocument::decode(const Json& accessor, std::size_t width, const std::string& what) const {
     const auto component = accessor["componentType"].get<std::uint64_t>();
     const bool is_normalized = accessor.value("normalized", false);
     GltfNumbers numbers;
     numbers.count = accessor["count"].get<std::size_t>();
-    numbers.width = width_of(type);
+    numbers.width = width;
     numbers.values = read(accessor, numbers.count, numbers.width, component, is_normalized);
     if (const auto sparse = accessor.find("sparse"); sparse != accessor.end()) {
         const auto changed = (*sparse)["count"].get<std::size_t>();
@@ -151,6 +188,7 @@ GltfNumbers GltfDocument::numbers(std::uint64_t index, const char* type) const {
                         numbers.values.begin() + std::ptrdiff_t(std::size_t(places[i]) * numbers.width));
         }
     }
+    find_faults(numbers);
     return numbers;
 }
 

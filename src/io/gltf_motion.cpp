@@ -58,6 +58,7 @@ class GltfMotion final : public Motion {
             if (!deformer.is_rigid())
                 (deformer.is_moved(nodes_) ? moving_ : still).push_back(std::move(deformer));
         }
+        document_->forget();
         const bool moves = !placed_.empty() || !moving_.empty() || camera_moves();
         kind = moves ? MotionKind::Keyframes : MotionKind::None;
         if (!moves) duration_seconds = 0;

@@ -24,7 +24,8 @@ std::size_t target_count(const GltfDocument& document, const Json& node) {
     if (!node.contains("mesh")) return 0;
     std::size_t count = 0;
     for (const Json& primitive : document.element("meshes", node["mesh"].get<std::uint64_t>())["primitives"])
-        count = std::max(count, primitive.value("targets", Json::array()).size());
+        if (const auto targets = primitive.find("targets"); targets != primitive.end())
+            count = std::max(count, targets->size());
     return count;
 }
 
@@ -100,15 +101,15 @@ GltfAnimation read_animation(const GltfDocument& document, std::size_t index) {
     const Json none = Json::array();
     const Json& channels = json.contains("channels") ? json["channels"] : none;
     const Json& samplers = json.contains("samplers") ? json["samplers"] : none;
+    const std::string name = in_quotes(animation_names(document)[index], 60);
     GltfAnimation animation;
     for (std::size_t i = 0; i < channels.size(); ++i) {
         // A channel without a node is for an extension, and to be passed over.
         if (!channels[i].contains("target") || !channels[i]["target"].contains("node")) continue;
         animation.channels.push_back(read_channel(document, channels[i], samplers,
-                                                  "channel " + std::to_string(i) + " of animation " +
-                                                      in_quotes(animation_names(document)[index], 60)));
+                                                  "channel " + std::to_string(i) + " of animation " + name));
         animation.duration_seconds =
-            std::max(animation.duration_seconds, animation.channels.back().track.times.back());
+            std::max(animation.duration_seconds, animation.channels.back().track.keys->values.back());
     }
     return animation;
 }

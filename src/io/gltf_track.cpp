@@ -80,11 +80,11 @@ Quaternion slerp(const Quaternion& from, Quaternion to, double share) {
 }
 
 std::vector<double> Track::at(double seconds) const {
-    const Place at = place(times, seconds);
+    const Place at = place(keys->values, seconds);
     const bool is_spline = interpolation == Interpolation::CubicSpline;
     const std::size_t stride = is_spline ? 3 * width : width;
     const auto part = [&](std::size_t key, std::size_t which) {
-        return std::span(values).subspan(key * stride + which * width, width);
+        return std::span(values->values).subspan(key * stride + which * width, width);
     };
     const auto value = part(at.key, is_spline ? 1 : 0);
     std::vector<double> result(value.begin(), value.end());
@@ -118,23 +118,22 @@ Track read_track(const GltfDocument& document, const nlohmann::json& sampler, st
     else if (word == "CUBICSPLINE") track.interpolation = Interpolation::CubicSpline;
     else if (word != "LINEAR")
         fail(" has the interpolation " + in_quotes(word, 40) + "; known are LINEAR, STEP and CUBICSPLINE");
-    track.times = document.numbers(sampler["input"].get<std::uint64_t>(), "SCALAR").values;
-    if (track.times.empty()) fail(" has no key");
-    for (std::size_t i = 0; i < track.times.size(); ++i)
-        if (!std::isfinite(track.times[i]) || track.times[i] < 0 ||
-            (i && track.times[i] < track.times[i - 1]))
-            fail(": key " + std::to_string(i) + " is at " + std::to_string(track.times[i]) +
-                 " s; times must be finite, 0 or more, and must not fall");
+    track.keys = document.numbers(sampler["input"].get<std::uint64_t>(), "SCALAR");
+    const std::vector<double>& times = track.keys->values;
+    if (times.empty()) fail(" has no key");
+    if (const std::size_t i = track.keys->first_no_time; i < times.size())
+        fail(": key " + std::to_string(i) + " is at " + std::to_string(times[i]) +
+             " s; times must be finite, 0 or more, and must not fall");
     const char* type = kind == Values::Weights ? "SCALAR" : kind == Values::Quaternions ? "VEC4" : "VEC3";
-    track.values = document.numbers(sampler["output"].get<std::uint64_t>(), type).values;
+    track.values = document.numbers(sampler["output"].get<std::uint64_t>(), type);
+    const std::size_t count = track.values->values.size();
     const std::size_t needed =
-        track.times.size() * width * (track.interpolation == Interpolation::CubicSpline ? 3 : 1);
-    if (track.values.size() != needed)
-        fail(" has " + std::to_string(track.values.size()) + " numbers for " +
-             std::to_string(track.times.size()) + " keys; " + std::to_string(needed) + " are needed");
-    const auto found = std::ranges::find_if_not(track.values, [](double v) { return std::isfinite(v); });
-    if (found != track.values.end())
-        fail(": value " + std::to_string(found - track.values.begin()) + " is not finite");
+        times.size() * width * (track.interpolation == Interpolation::CubicSpline ? 3 : 1);
+    if (count != needed)
+        fail(" has " + std::to_string(count) + " numbers for " + std::to_string(times.size()) + " keys; " +
+             std::to_string(needed) + " are needed");
+    if (track.values->first_not_finite < count)
+        fail(": value " + std::to_string(track.values->first_not_finite) + " is not finite");
     return track;
 }
 

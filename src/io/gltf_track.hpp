@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -22,10 +23,10 @@ enum class Values { Vectors, Quaternions, Weights };
 struct Track {
     Interpolation interpolation = Interpolation::Linear;
     Values kind = Values::Vectors;
-    std::size_t width = 0;      ///< numbers of a value
-    std::vector<double> times;  ///< seconds, not falling
-    std::vector<double>
-        values;  ///< width a key; of a spline three times as many: tangent in, value, tangent out
+    std::size_t width = 0;                    ///< numbers of a value
+    std::shared_ptr<const GltfNumbers> keys;  ///< seconds, not falling; channels share them
+    std::shared_ptr<const GltfNumbers>
+        values;  ///< width a key; of a spline thrice: tangent in, value, tangent out
 
     /// The value at a time: `width` numbers.
     [[nodiscard]] std::vector<double> at(double seconds) const;

@@ -375,6 +375,73 @@ TEST(Animation, IsRefusedWhereItContradictsItself) {
     refuses([](File& f) { f.json["skins"][0]["joints"] = {3}; }, "hangs on joint 1; the skin has 1");
 }
 
+/// Zeros that take no space in the file, as many as are believed.
+std::size_t add_zeros(File& file, const char* type) {
+    const std::size_t place = file.add<std::uint16_t>("SCALAR", {0}),
+                      value = file.add<float>(type, {0, 0, 0, 1}, 4);
+    const auto view = [&](std::size_t i) { return file.json["accessors"][i]["bufferView"]; };
+    const Json sparse = {{"count", 1},
+                         {"indices", {{"bufferView", view(place)}, {"componentType", 5123}}},
+                         {"values", {{"bufferView", view(value)}}}};
+    file.json["accessors"].push_back(
+        {{"componentType", 5126}, {"count", 1 << 22}, {"type", type}, {"sparse", sparse}});
+    return file.json["accessors"].size() - 1;
+}
+
+void turn(File& file, std::size_t input, std::size_t output) {
+    file.move(1, "rotation", "STEP", {0}, "VEC4", 4, {0, 0, 0, 1});
+    file.json["animations"][0]["samplers"].back() = {{"input", input}, {"output", output}};
+}
+
+/// Small files could ask for any amount of memory. A channel of these takes 2^25 bytes of times and 2^27 of
+/// values: four are above 2^29 if they share the times, and any number is not if they share the values too.
+TEST(Animation, HasABudgetForAllThatIsDecoded) {
+    File file;
+    const std::size_t times = add_zeros(file, "SCALAR"), values = add_zeros(file, "VEC4");
+    for (int i = 0; i < 100; ++i) turn(file, times, values);
+    EXPECT_EQ(file.open().kind(), MotionKind::Keyframes);
+    for (int i = 0; i < 3; ++i) turn(file, times, add_zeros(file, "VEC4"));
+    expect_error([&] { (void)file.open(); }, ErrorCategory::InvalidData,
+                 {"scene.gltf", "accessor " + std::to_string(file.json["accessors"].size() - 3),
+                  " takes 134217728 bytes beside 436207616", "together they may take 536870912"});
+}
+
+/// Each target keeps a vector for each vertex, also if all have one accessor.
+TEST(Animation, HasABudgetForTargets) {
+    File file;
+    const std::size_t count = 50000;
+    std::vector<float> points;
+    std::vector<std::uint16_t> corners;
+    for (std::size_t i = 0; i + 3 <= count; i += 3)
+        for (std::size_t k = 0; k < 3; ++k) {
+            points.insert(points.end(), {float(i), float(k == 1), float(k == 2)});
+            corners.push_back(static_cast<std::uint16_t>(i + k));
+        }
+    Json& primitive = file.json["meshes"][0]["primitives"][0];
+    primitive["attributes"]["POSITION"] = file.add<float>("VEC3", points, 3);
+    primitive["indices"] = file.add<std::uint16_t>("SCALAR", corners);
+    file.json["nodes"].erase(2);
+    file.json["scenes"][0]["nodes"] = {0};
+    const Json target = {{"POSITION", primitive["attributes"]["POSITION"]}};
+    primitive["targets"] = Json(std::vector<Json>(800, target));
+    EXPECT_EQ(file.open().kind(), MotionKind::None);
+    primitive["targets"] = Json(std::vector<Json>(1000, target));
+    expect_error([&] { (void)file.open(); }, ErrorCategory::InvalidData,
+                 {"scene.gltf", "primitive 0 of mesh 0, for accessor 2, takes 599976 bytes",
+                  "together they may take 536870912"});
+}
+
+TEST(Animation, HasALimitOfTargetsForFurtherNodes) {
+    File file;
+    const std::size_t up = file.add<float>("VEC3", {0, 0, 0, 0, 0, 1, 0, 0, 0}, 3);
+    const Json target = {{"POSITION", up}};
+    file.json["meshes"][0]["primitives"][0]["targets"] = Json(std::vector<Json>(1 << 10, target));
+    while (file.json["nodes"].size() < (1 << 10) + 3) file.json["nodes"].push_back({{"mesh", 0}});
+    expect_error([&] { (void)file.open(); }, ErrorCategory::InvalidData,
+                 {"scene.gltf", "share meshes with more than 2^20 morph targets"});
+    EXPECT_EQ(load_scene(file.write()).triangle_count(), 2u) << "which has no targets";
+}
+
 /// What is refused when a picture of it is wanted must not depend on its motion.
 TEST(Animation, IsNoConcernOfLoadScene) {
     File file;

@@ -113,6 +113,16 @@ TEST(Gltf, RefusesWhatContradictsItself) {
                       "promises 255 bytes");
 }
 
+TEST(Gltf, RefusesDataWithoutBase64) {
+    const Folder folder;
+    for (const char* uri : {"data:,", "data:x,", "data:;base64", "data:base64,AAAA"}) {
+        Json json = triangle(folder);
+        json["buffers"][0]["uri"] = uri;
+        SCOPED_TRACE(uri);
+        expect_unreadable(write(folder, json), "buffer 0 is a data URI that is not base64");
+    }
+}
+
 TEST(Gltf, DropsPrimitivesWithoutTriangles) {
     const Folder folder;
     Json json = triangle(folder);

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 /// Do pictures reach their files with the right pixels, and do failures say why and leave nothing behind?
 #include <OpenImageIO/imageio.h>
+#include <sys/resource.h>
+
+#include <cmath>
+#include <csignal>
 
 #include "setka/animation.hpp"
 #include "tests/io/support.hpp"
@@ -136,6 +140,82 @@ TEST(GifFile, HoldsEveryPictureAndItsTime) {
         EXPECT_EQ(rate->get_string(), "100/8") << "8 hundredths of a second";
     }
     EXPECT_FALSE(input->seek_subimage(count, 0)) << "too many";
+}
+
+/// The times of all pictures in hundredths of a second, from the bytes.
+std::vector<int> delays(const std::string& gif) {
+    const std::string control("\x21\xf9\x04", 3);
+    std::vector<int> list;
+    for (std::size_t at = gif.find(control); at != gif.npos; at = gif.find(control, at + 1))
+        list.push_back(static_cast<unsigned char>(gif.at(at + 4)) +
+                       256 * static_cast<unsigned char>(gif.at(at + 5)));
+    return list;
+}
+
+TEST(GifFile, RoundsTheTimeOfAPicture) {
+    const Folder folder;
+    // 45, 90 and 175 hundredths are one less if they are cut from floats.
+    for (const auto& [frames_per_second, hundredths] : {std::pair(200.0, 1),
+                                                        {100.0, 1},
+                                                        {60.0, 2},
+                                                        {24.0, 4},
+                                                        {100.0 / 45, 45},
+                                                        {100.0 / 90, 90},
+                                                        {100.0 / 175, 175},
+                                                        {1.0, 100},
+                                                        {0.1, 1000},
+                                                        {100.0 / 65535, 65535},
+                                                        {0.001526, 65531}}) {
+        GifFile gif(folder / "a.gif", frames_per_second);
+        gif.add(grey(10));
+        gif.add(grey(200));
+        gif.finish();
+        EXPECT_EQ(delays(read_bytes(folder / "a.gif")), std::vector<int>(2, hundredths)) << frames_per_second;
+    }
+    for (const double refused :
+         {0.0, -1.0, 0.001, 201.0, 1e300, double(INFINITY), -double(INFINITY), double(NAN)})
+        expect_error([&] { GifFile(folder / "b.gif", refused); }, ErrorCategory::InvalidArgument,
+                     {"frames_per_second = ", "accepted is 0.001526 to 200"});
+    EXPECT_EQ(folder.file_count(), 1u);
+}
+
+/// A disk that is full at any byte, the last one included.
+TEST(GifFile, ThatDoesNotFitLeavesTheOldOne) {
+    const Folder folder;
+    const auto write = [&] {
+        GifFile gif(folder / "a.gif", 24);
+        for (const std::uint8_t value : {0, 100, 250}) gif.add(grey(value));
+        gif.finish();
+    };
+    write();
+    const std::size_t complete = read_bytes(folder / "a.gif").size();  // unused colours have bytes of chance
+    (void)folder.write("a.gif", "old");
+    rlimit before{};
+    ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    const auto limited = [&](std::size_t size_bytes) {
+        const rlimit limit{size_bytes, before.rlim_max};
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+        std::string error;
+        try {
+            write();
+        } catch (const Error& e) {
+            EXPECT_EQ(e.category(), ErrorCategory::InvalidArgument);
+            error = e.what();
+        }
+        ::setrlimit(RLIMIT_FSIZE, &before);
+        return error;
+    };
+    for (std::size_t size_bytes = 0; size_bytes < complete; ++size_bytes) {
+        const std::string error = limited(size_bytes);
+        ASSERT_THAT(error, testing::AllOf(testing::HasSubstr("a.gif"), testing::HasSubstr("disk full")))
+            << size_bytes;
+        ASSERT_EQ(read_bytes(folder / "a.gif"), "old");
+        ASSERT_EQ(folder.file_count(), 1u);
+    }
+    EXPECT_EQ(limited(complete), "");
+    std::signal(SIGXFSZ, handler);
+    EXPECT_EQ(read_bytes(folder / "a.gif").size(), complete);
 }
 
 TEST(GifFile, LeavesNothingBehindOnFailure) {
