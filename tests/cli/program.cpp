@@ -78,11 +78,23 @@ Outcome run(const std::vector<std::string>& arguments,
     return run_watched(arguments, environment, [](pid_t, const std::string&) {});
 }
 
+namespace {
+
+/// Whether the process has a handler for SIGINT by now: before, it would just end. Busy machines take seconds to start a program.
+bool handles_interrupts(pid_t child) {
+    std::ifstream status("/proc/" + std::to_string(child) + "/status");
+    for (std::string line; std::getline(status, line);)
+        if (line.starts_with("SigCgt:")) return (std::stoull(line.substr(7), nullptr, 16) >> (SIGINT - 1) & 1) != 0;
+    return false;
+}
+
+}  // namespace
+
 Outcome run_and_interrupt(const std::vector<std::string>& arguments,
                           const std::function<bool(const std::string&)>& signal_when, int most) {
     int sent = 0;
     return run_watched(arguments, {}, [&](pid_t child, const std::string& errors) {
-        if (sent == most || !signal_when(read_file(errors))) return;
+        if (sent == most || !handles_interrupts(child) || !signal_when(read_file(errors))) return;
         ::kill(child, SIGINT);
         ++sent;
     });
