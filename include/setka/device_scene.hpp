@@ -65,11 +65,12 @@ class DeviceScene {
     void set_transform(std::uint32_t number, const Matrix34& transform);
     void remove_instance(std::uint32_t number);
 
-    /// Moves what the update says, and commits; its camera is the renderer's business. Throws what the calls above throw, after all of the update
-    /// was checked; and what commit() throws.
+    /// Moves what the update says, and commits; its camera is the renderer's business. Throws InvalidArgument, and changes nothing, for
+    /// what setka::apply(Scene&, …) would refuse; and what commit() throws.
     void apply(Queue& queue, const SceneUpdate& update);
 
-    // What is shaded with. Throws InvalidData for what Scene::validate would refuse.
+    // What is shaded with. Throws InvalidData for what Scene::validate would refuse, InvalidArgument for the number of a material that is not
+    // there.
 
     /// The number of the new material.
     std::uint32_t add_material(const Material& material);

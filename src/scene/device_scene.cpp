@@ -3,7 +3,6 @@
 #include "setka/device_scene.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 #include <string>
 
@@ -18,12 +17,8 @@ namespace {
 
 template <typename... Ts>
 [[noreturn]] void refuse(const Ts&... parts) {
-    std::string message;
-    ((message += parts), ...);
-    throw Error(ErrorCategory::InvalidArgument, message);
+    fail(ErrorCategory::InvalidArgument, parts...);
 }
-
-std::string number(std::uint64_t value) { return std::to_string(value); }
 
 /// The lowest number that is free.
 template <typename Entry>
@@ -42,21 +37,14 @@ void put(std::vector<Entry>& entries, std::set<std::uint32_t>& free, std::uint32
     }
 }
 
-void check_transform(const Matrix34& transform, std::uint32_t instance) {
-    const auto bad = std::ranges::find_if_not(transform.rows, [](float v) { return std::isfinite(v); });
-    if (bad != transform.rows.end())
-        refuse("instance ", number(instance), ": element ", number(std::uint64_t(bad - transform.rows.begin())),
-               " of its transform is ", std::to_string(*bad), "; finite numbers are accepted");
-}
-
 void check_instance(const std::vector<MeshEntry>& meshes, const std::vector<Material>& materials,
                     const Instance& instance, std::uint32_t index) {
-    const std::string owner = "instance " + number(index) + ": ";
+    const std::string owner = "instance " + std::to_string(index);
     if (instance.mesh >= meshes.size() || !meshes[instance.mesh].is_live)
-        refuse(owner, absence("mesh", instance.mesh, meshes.size()));
+        refuse(owner, ": ", absence("mesh", instance.mesh, meshes.size()));
     if (instance.material >= materials.size())
-        refuse(owner, absence("material", instance.material, materials.size()));
-    check_transform(instance.transform, index);
+        refuse(owner, ": ", absence("material", instance.material, materials.size()));
+    check_finite(owner, instance.transform);
 }
 
 /// Throws if the scene would be too large with `mesh` in place of one that takes `old`, and that so many instances have.
@@ -65,6 +53,10 @@ void check_room(const MeshTables& tables, const Mesh& mesh, const MeshPlace& old
                       .mesh_triangles = tables.triangles() - old.triangles.size + mesh.triangles.size(),
                       .triangles = std::uint64_t(users) * mesh.triangles.size(),
                       .instances = 0});
+}
+
+MeshPlace place_one(Queue& queue, MeshTables& tables, const Mesh& mesh) {
+    return tables.place(queue, {&mesh, 1}).front();
 }
 
 }  // namespace
@@ -84,8 +76,7 @@ DeviceScene::DeviceScene(Queue& queue, const Scene& scene) : DeviceScene() {
     }
     check_scene_size(size);
     State& state = *state_;
-    state.tables.reserve(queue, size.vertices, size.mesh_triangles);
-    for (const Mesh& mesh : scene.meshes) state.meshes.push_back({state.tables.place(queue, mesh), 0, true});
+    for (const MeshPlace& place : state.tables.place(queue, scene.meshes)) state.meshes.push_back({place, 0, true});
     for (const Instance& instance : scene.instances) {
         state.entries.push_back({instance, true, false});
         ++state.meshes[instance.mesh].users;
@@ -104,7 +95,7 @@ std::uint32_t DeviceScene::add_mesh(Queue& queue, const Mesh& mesh) {
     check(mesh, index);
     check_room(state.tables, mesh, MeshPlace{}, 0);
     state.meshes.reserve(state.meshes.size() + 1);  // so that nothing fails when the mesh has its place
-    put(state.meshes, state.free_meshes, index, {state.tables.place(queue, mesh), 0, true});
+    put(state.meshes, state.free_meshes, index, {place_one(queue, state.tables, mesh), 0, true});
     return index;
 }
 
@@ -113,7 +104,7 @@ void DeviceScene::replace_mesh(Queue& queue, std::uint32_t mesh, const Mesh& wit
     MeshEntry& entry = state.mesh(mesh);
     check(with, mesh);
     check_room(state.tables, with, entry.place, entry.users);
-    const MeshPlace place = state.tables.place(queue, with);
+    const MeshPlace place = place_one(queue, state.tables, with);
     state.tables.remove(entry.place);
     entry.place = place;
     if (entry.users > 0) state.layout_changed = true;
@@ -121,38 +112,10 @@ void DeviceScene::replace_mesh(Queue& queue, std::uint32_t mesh, const Mesh& wit
 
 namespace {
 
-void check_count(const char* what, std::size_t count, std::uint32_t mesh, std::uint64_t vertices) {
-    if (count != vertices)
-        refuse(what, " are ", number(count), " vertices; mesh ", number(mesh), " has ", number(vertices));
-}
-
-/// Throws unless so many positions and normals can be those of the mesh.
-void check_vertices(const MeshPlace& place, std::uint32_t mesh, std::size_t positions, std::size_t normals) {
-    check_count("positions", positions, mesh, place.vertices.size);
-    if (normals == 0) return;
-    if (!place.has_normals)
-        refuse("normals are given, but mesh ", number(mesh), " has none; replace_mesh() can give it some");
-    check_count("normals", normals, mesh, place.vertices.size);
-}
-
 /// Vertices in a buffer of 3 floats each.
 std::size_t vertices_in(const char* what, const Buffer<float>& buffer) {
-    if (buffer.size() % 3 != 0)
-        refuse(what, " has ", number(buffer.size()), " floats; a multiple of 3 is accepted");
+    if (buffer.size() % 3 != 0) refuse(what, " has ", buffer.size(), " floats; a multiple of 3 is accepted");
     return buffer.size() / 3;
-}
-
-}  // namespace
-
-namespace {
-
-/// The same of vertices on the host, which have to be finite.
-void check_vertices(const MeshPlace& place, std::uint32_t mesh, std::span<const Float3> positions,
-                    std::span<const Float3> normals) {
-    check_vertices(place, mesh, positions.size(), normals.size());
-    const std::string owner = "mesh " + number(mesh);
-    check_finite(owner, "position", positions);
-    check_finite(owner, "normal", normals);
 }
 
 void write_vertices(Queue& queue, MeshTables& tables, const MeshPlace& place, std::span<const Float3> positions,
@@ -166,29 +129,24 @@ void write_vertices(Queue& queue, MeshTables& tables, const MeshPlace& place, st
 void DeviceScene::set_vertices(Queue& queue, std::uint32_t mesh, std::span<const Float3> positions,
                                std::span<const Float3> normals) {
     const MeshPlace& place = state_->mesh(mesh).place;
-    check_vertices(place, mesh, positions, normals);
+    check_vertices(mesh, counts_of(place), positions, normals);
     write_vertices(queue, state_->tables, place, positions, normals);
 }
 
 void DeviceScene::set_vertices(Queue& queue, std::uint32_t mesh, const Buffer<float>& positions,
                                const Buffer<float>& normals) {
     const MeshPlace& place = state_->mesh(mesh).place;
-    check_vertices(place, mesh, vertices_in("positions", positions), vertices_in("normals", normals));
+    check_counts(mesh, counts_of(place), vertices_in("positions", positions), vertices_in("normals", normals));
     const MeshTables& tables = state_->tables;
     if (positions.memory() == tables.positions().memory() || (!normals.empty() && normals.memory() == tables.normals().memory()))
-        refuse("positions or normals for mesh ", number(mesh), " are the scene's own table; another buffer is accepted");
+        refuse("positions or normals for mesh ", mesh, " are the scene's own table; another buffer is accepted");
     const std::size_t first = 3 * place.vertices.first;
     queue.copy(positions, 0, tables.positions(), first, positions.size());
     if (!normals.empty()) queue.copy(normals, 0, tables.normals(), first, normals.size());
 }
 
 void DeviceScene::apply(Queue& queue, const SceneUpdate& update) {
-    for (const auto& [instance, transform] : update.placements) {
-        (void)state_->entry(instance);
-        check_transform(transform, instance);
-    }
-    for (const auto& [mesh, positions, normals] : update.vertices)
-        check_vertices(state_->mesh(mesh).place, mesh, std::span(positions), std::span(normals));
+    check(update, state_->numbers());
     for (const auto& [mesh, positions, normals] : update.vertices)
         write_vertices(queue, state_->tables, state_->mesh(mesh).place, positions, normals);
     for (const auto& [instance, transform] : update.placements) set_transform(instance, transform);
@@ -202,8 +160,8 @@ void DeviceScene::remove_mesh(std::uint32_t mesh) {
         const auto user = std::ranges::find_if(state.entries, [&](const InstanceEntry& e) {
             return e.is_live && e.instance.mesh == mesh;
         });
-        refuse("mesh ", number(mesh), " cannot be removed: it is that of ", number(entry.users), " instances, such as ",
-               number(std::uint64_t(user - state.entries.begin())), "; remove these first");
+        refuse("mesh ", mesh, " cannot be removed: it is that of ", entry.users, " instances, such as ",
+               std::uint64_t(user - state.entries.begin()), "; remove these first");
     }
     state.free_meshes.insert(mesh);
     state.tables.remove(entry.place);
@@ -235,7 +193,7 @@ void DeviceScene::set_instance(std::uint32_t number, const Instance& instance) {
 
 void DeviceScene::set_transform(std::uint32_t number, const Matrix34& transform) {
     InstanceEntry& entry = state_->entry(number);
-    check_transform(transform, number);
+    check_finite("instance " + std::to_string(number), transform);
     state_->edit(number);
     entry.instance.transform = transform;
 }

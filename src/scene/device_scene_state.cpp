@@ -19,20 +19,25 @@ constexpr std::uint32_t close = 16;
 template <typename Entry>
 Entry& find(std::vector<Entry>& entries, std::uint32_t index, const char* what) {
     if (index < entries.size() && entries[index].is_live) return entries[index];
-    throw Error(ErrorCategory::InvalidArgument, absence(what, index, entries.size()));
+    fail(ErrorCategory::InvalidArgument, absence(what, index, entries.size()));
 }
 
 }  // namespace
 
 bool is_opaque(const Material& material) noexcept { return !(material.transparency > 0); }
 
-std::string absence(const char* what, std::uint64_t number, std::uint64_t count) {
-    return std::string(what) + ' ' + std::to_string(number) + " does not exist; " +
-           (number < count ? "it was removed" : "there are " + std::to_string(count));
-}
-
 MeshEntry& DeviceScene::State::mesh(std::uint32_t index) { return find(meshes, index, "mesh"); }
 InstanceEntry& DeviceScene::State::entry(std::uint32_t index) { return find(entries, index, "instance"); }
+
+SceneNumbers DeviceScene::State::numbers() const {
+    return {.meshes = meshes.size(),
+            .instances = entries.size(),
+            .vertices = [this](std::uint32_t mesh) -> std::optional<VertexCounts> {
+                if (mesh >= meshes.size() || !meshes[mesh].is_live) return {};
+                return counts_of(meshes[mesh].place);
+            },
+            .has_instance = [this](std::uint32_t index) { return index < entries.size() && entries[index].is_live; }};
+}
 
 void DeviceScene::State::edit(std::uint32_t index) {
     if (entries[index].is_edited) return;

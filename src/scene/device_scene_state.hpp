@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/checks.hpp"
 #include "scene/mesh_tables.hpp"
 #include "setka/device_scene.hpp"
 
@@ -17,6 +18,10 @@ struct MeshEntry {
     std::uint32_t users = 0;  ///< instances that have the mesh
     bool is_live = false;
 };
+
+[[nodiscard]] inline VertexCounts counts_of(const MeshPlace& place) noexcept {
+    return {place.vertices.size, place.has_normals ? place.vertices.size : 0};
+}
 
 struct InstanceEntry {
     Instance instance;
@@ -50,6 +55,7 @@ struct DeviceScene::State {
     /// Both throw InvalidArgument for a number that names nothing.
     [[nodiscard]] MeshEntry& mesh(std::uint32_t index);
     [[nodiscard]] InstanceEntry& entry(std::uint32_t index);
+    [[nodiscard]] SceneNumbers numbers() const;
     /// Remembers that the instance's record may be another.
     void edit(std::uint32_t index);
     void commit(Queue& queue);
@@ -71,8 +77,5 @@ struct DeviceScene::State {
 };
 
 [[nodiscard]] bool is_opaque(const Material& material) noexcept;
-
-/// "mesh 3 does not exist; it was removed"
-[[nodiscard]] std::string absence(const char* what, std::uint64_t number, std::uint64_t count);
 
 }  // namespace setka

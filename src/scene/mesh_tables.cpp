@@ -58,12 +58,33 @@ void enlarge(const Room& room, std::uint64_t more, const char* what, const Grow&
     grow(least);
 }
 
-}  // namespace
+/// Uploads to a table. What goes to neighbouring places goes together, since small transfers cost more than their bytes. Complete after flush().
+template <typename T>
+class Transfers {
+  public:
+    Transfers(Queue& queue, const Buffer<T>& table) : queue_(queue), table_(table) {}
 
-void MeshTables::reserve(Queue& queue, std::uint64_t vertices, std::uint64_t triangles) {
-    reserve_vertices(queue, vertices);
-    reserve_triangles(queue, triangles);
-}
+    void add(std::span<const T> values, std::uint64_t first) {
+        constexpr std::size_t large = (std::size_t{1} << 20) / sizeof(T);  // worth a transfer, not worth a copy
+        if (first != first_ + pending_.size() || pending_.size() + values.size() > large) flush();
+        if (values.size() > large) return queue_.upload(values, table_, first);
+        if (pending_.empty()) first_ = first;
+        pending_.insert(pending_.end(), values.begin(), values.end());
+    }
+
+    void flush() {
+        if (!pending_.empty()) queue_.upload(std::span<const T>(pending_), table_, first_);
+        pending_.clear();
+    }
+
+  private:
+    Queue& queue_;
+    const Buffer<T>& table_;
+    std::vector<T> pending_;
+    std::uint64_t first_ = 0;
+};
+
+}  // namespace
 
 void MeshTables::reserve_vertices(Queue& queue, std::uint64_t more) {
     if (const auto range = vertex_room_.take(more)) return vertex_room_.give(*range);
@@ -87,30 +108,44 @@ void MeshTables::reserve_triangles(Queue& queue, std::uint64_t more) {
     });
 }
 
-MeshPlace MeshTables::place(Queue& queue, const Mesh& mesh) {
-    reserve(queue, mesh.positions.size(), mesh.triangles.size());
-    const MeshPlace place{*vertex_room_.take(mesh.positions.size()), *triangle_room_.take(mesh.triangles.size()),
-                          !mesh.normals.empty(), !mesh.colors.empty()};
+std::vector<MeshPlace> MeshTables::place(Queue& queue, std::span<const Mesh> meshes) {
+    std::uint64_t vertices = 0, triangles = 0;
+    for (const Mesh& mesh : meshes) {
+        vertices += mesh.positions.size();
+        triangles += mesh.triangles.size();
+    }
+    std::vector<MeshPlace> places;
+    places.reserve(meshes.size());
+    reserve_vertices(queue, vertices);
+    reserve_triangles(queue, triangles);
+    for (const Mesh& mesh : meshes)
+        places.push_back({*vertex_room_.take(mesh.positions.size()), *triangle_room_.take(mesh.triangles.size()),
+                          !mesh.normals.empty(), !mesh.colors.empty()});
     try {
-        upload(queue, place, mesh);
+        upload(queue, places, meshes);
     } catch (...) {
-        remove(place);
+        for (const MeshPlace& place : places) remove(place);
         throw;
     }
-    return place;
+    return places;
 }
 
-void MeshTables::upload(Queue& queue, const MeshPlace& place, const Mesh& mesh) {
-    write_positions(queue, place, mesh.positions);
-    queue.upload(components(std::span(mesh.triangles)), indices_, 3 * place.triangles.first);
-    if (place.has_normals) {
-        provide(queue, normals_, "normals");
-        write_normals(queue, place, mesh.normals);
+void MeshTables::upload(Queue& queue, std::span<const MeshPlace> places, std::span<const Mesh> meshes) {
+    if (std::ranges::any_of(places, &MeshPlace::has_normals)) provide(queue, normals_, "normals");
+    if (std::ranges::any_of(places, &MeshPlace::has_colors)) provide(queue, colors_, "colors");
+    Transfers positions(queue, positions_), normals(queue, normals_), colors(queue, colors_);
+    Transfers indices(queue, indices_);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const std::uint64_t first_vertex = 3 * places[i].vertices.first;
+        positions.add(components(std::span(meshes[i].positions)), first_vertex);
+        indices.add(components(std::span(meshes[i].triangles)), 3 * places[i].triangles.first);
+        if (places[i].has_normals) normals.add(components(std::span(meshes[i].normals)), first_vertex);
+        if (places[i].has_colors) colors.add(components(std::span(meshes[i].colors)), first_vertex);
     }
-    if (place.has_colors) {
-        provide(queue, colors_, "colors");
-        queue.upload(components(std::span(mesh.colors)), colors_, 3 * place.vertices.first);
-    }
+    positions.flush();
+    indices.flush();
+    normals.flush();
+    colors.flush();
 }
 
 void MeshTables::provide(Queue& queue, Buffer<float>& table, const char* name) const {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "scene/room.hpp"
 #include "setka/device.hpp"
@@ -19,10 +20,8 @@ struct MeshPlace {
 
 class MeshTables {
   public:
-    /// Room for so many more vertices and triangles, in one piece each, so that place() need not grow the tables.
-    void reserve(Queue& queue, std::uint64_t vertices, std::uint64_t triangles);
-    /// Takes room for a mesh and uploads it; if that throws, the room is free again.
-    [[nodiscard]] MeshPlace place(Queue& queue, const Mesh& mesh);
+    /// Takes room for meshes, side by side where there is some for all, and uploads them; if that throws, the room is free again.
+    [[nodiscard]] std::vector<MeshPlace> place(Queue& queue, std::span<const Mesh> meshes);
     /// Its room is free for others.
     void remove(const MeshPlace& place);
 
@@ -43,7 +42,7 @@ class MeshTables {
   private:
     void reserve_vertices(Queue& queue, std::uint64_t more);
     void reserve_triangles(Queue& queue, std::uint64_t more);
-    void upload(Queue& queue, const MeshPlace& place, const Mesh& mesh);
+    void upload(Queue& queue, std::span<const MeshPlace> places, std::span<const Mesh> meshes);
     /// Makes one of the tables that not every scene has.
     void provide(Queue& queue, Buffer<float>& table, const char* name) const;
 

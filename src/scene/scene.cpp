@@ -6,7 +6,6 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <sstream>
 
 #include "scene/checks.hpp"
 #include "scene/transform.hpp"
@@ -17,22 +16,14 @@ namespace setka {
 
 namespace {
 
-template <typename... Ts>
-[[noreturn]] void fail(const Ts&... parts) {
-    std::ostringstream message;
-    (message << ... << parts);
-    throw Error(ErrorCategory::InvalidData, message.str());
-}
-
 void check(const Instance& instance, std::size_t index, const Scene& scene) {
     if (instance.mesh >= scene.meshes.size())
-        fail("instance ", index, ": mesh ", instance.mesh, " does not exist; there are ",
-             scene.meshes.size());
+        fail(ErrorCategory::InvalidData, "instance ", index, ": ", absence("mesh", instance.mesh, scene.meshes.size()));
     if (instance.material >= scene.materials.size())
-        fail("instance ", index, ": material ", instance.material, " does not exist; there are ",
-             scene.materials.size());
+        fail(ErrorCategory::InvalidData, "instance ", index, ": ",
+             absence("material", instance.material, scene.materials.size()));
     if (!is_finite(instance.transform))
-        fail("instance ", index, ": its transform is not finite");
+        fail(ErrorCategory::InvalidData, "instance ", index, ": its transform is not finite");
 }
 
 /// The positions that triangles use, each once: files hold stray ones, which must not move a box.
@@ -90,7 +81,7 @@ void Scene::validate() const {
     for (std::size_t i = 0; i < directional_lights.size(); ++i) check(directional_lights[i], i);
     if (camera) check(*camera);
     check(background);
-    if (triangle_count() == 0) fail("the scene has no triangle");
+    if (triangle_count() == 0) fail(ErrorCategory::InvalidData, "the scene has no triangle");
 }
 
 void append(Scene& target, Scene source) {

@@ -64,10 +64,10 @@ const BadEdit bad_edits[] = {
      [](Queue&, DeviceScene& s) { s.set_instance(1, {.mesh = 0, .transform = with_element(11, -std::numeric_limits<float>::infinity())}); },
      ErrorCategory::InvalidArgument, "instance 1: element 11 of its transform is -inf"},
     {"other_vertex_count", [](Queue& q, DeviceScene& s) { s.set_vertices(q, 0, std::vector<setka::Float3>(4)); },
-     ErrorCategory::InvalidArgument, "positions are 4 vertices; mesh 0 has 90"},
+     ErrorCategory::InvalidArgument, "4 positions for mesh 0, which has 90"},
     {"buffer_of_other_size",
      [](Queue& q, DeviceScene& s) { s.set_vertices(q, 0, q.make_buffer<float>(12, "positions")); },
-     ErrorCategory::InvalidArgument, "positions are 4 vertices; mesh 0 has 90"},
+     ErrorCategory::InvalidArgument, "4 positions for mesh 0, which has 90"},
     {"buffer_of_no_vertices",
      [](Queue& q, DeviceScene& s) { s.set_vertices(q, 0, q.make_buffer<float>(13, "positions")); },
      ErrorCategory::InvalidArgument, "positions has 13 floats; a multiple of 3"},
@@ -77,7 +77,7 @@ const BadEdit bad_edits[] = {
          positions[41].z = nan;
          s.set_vertices(q, 0, positions);
      },
-     ErrorCategory::InvalidData, "mesh 0: position 41 is not finite"},
+     ErrorCategory::InvalidData, "mesh 0: position 41 is not finite: (0, 0, nan)"},
     {"index_out_of_range", [](Queue& q, DeviceScene& s) { s.replace_mesh(q, 0, with_index(6)); },
      ErrorCategory::InvalidData, "triangle 1 uses vertex 6 of 6"},
     {"mesh_with_too_few_normals",

@@ -71,15 +71,15 @@ TEST(SceneUpdate, IsRefusedAsAWhole) {
         EXPECT_FALSE(scene.camera) << "half applied";
     };
     refuses([](SceneUpdate& u) { u.placements[0].instance = 2; },
-            "update.placements[0]: instance = 2 does not exist; there are 2");
-    refuses([](SceneUpdate& u) { u.placements[0].transform.rows[7] = nan; }, "transform.rows[7] = nan");
+            "update.placements[0]: instance 2 does not exist; there are 2");
+    refuses([](SceneUpdate& u) { u.placements[0].transform.rows[7] = nan; }, "update.placements[0]: instance 1: element 7 of its transform is nan");
     refuses([](SceneUpdate& u) { u.vertices[0].mesh = 1; },
-            "update.vertices[0]: mesh = 1 does not exist; there are 1");
+            "update.vertices[0]: mesh 1 does not exist; there are 1");
     refuses([](SceneUpdate& u) { u.vertices[0].positions.pop_back(); },
             "2 positions for mesh 0, which has 3");
     refuses([](SceneUpdate& u) { u.vertices[0].normals.pop_back(); }, "2 normals for mesh 0, which has 3");
-    refuses([](SceneUpdate& u) { u.vertices[0].positions[2].y = nan; }, "position 2 is (0, nan, 2)");
-    refuses([](SceneUpdate& u) { u.vertices[0].normals[1].x = nan; }, "normal 1 is (nan, 1, 0)");
+    refuses([](SceneUpdate& u) { u.vertices[0].positions[2].y = nan; }, "update.vertices[0]: mesh 0: position 2 is not finite: (0, nan, 2)");
+    refuses([](SceneUpdate& u) { u.vertices[0].normals[1].x = nan; }, "normal 1 is not finite: (nan, 1, 0)");
     refuses([](SceneUpdate& u) { u.camera->target = u.camera->eye; }, "update.camera: eye and target");
 }
 
