@@ -23,6 +23,7 @@
 #include "setka/io.hpp"
 #include "setka/renderer.hpp"
 #include "setka/version.hpp"
+#include "trace/names.hpp"
 #include "workload/measure.hpp"
 
 namespace setka::cli {
@@ -121,7 +122,7 @@ class CameraPath {
         {"size", fmt::format("{}x{}", options.render.width, options.render.height)},
         {"samples", options.render.samples_per_axis},
         {"depth", options.render.max_depth},
-        {"view", to_string(options.render.view)},
+        {"view", name_of(options.render.view)},
         {"fps", options.moments.frames_per_second},
         {"orbit", options.moments.orbit_degrees_per_second},
         {"up", point(options.camera.up)},
@@ -133,7 +134,7 @@ class CameraPath {
     if (options.render.view == View::Steps || options.render.view == View::Tests) {
         const GridOptions& grid = options.structure.grid;
         settings["grid"] = {to_string(options.structure.kind), grid.density, grid.max_cells_per_axis,
-                            options.render.trace.step == GridStep::Dda ? "dda" : "branch-free"};
+                            name_of(options.render.trace.step)};
     }
     settings["files"] = files;
     settings["contents"] = footage.digest();
@@ -164,8 +165,10 @@ class Film {
         };
         SceneUpdate update;
         timed(report.times.pose_ms, [&] { update = footage_.at(moment); });
-        timed(report.times.upload_ms, [&] { scene_.apply(queue_, update);
-            queue_.finish(); });
+        timed(report.times.upload_ms, [&] {
+            scene_.apply(queue_, update);
+            queue_.finish();
+        });
         std::unique_ptr<Structure> structure;
         timed(report.times.build_ms, [&] {
             structure = options_.structure.build(queue_, scene_);

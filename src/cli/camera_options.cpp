@@ -6,6 +6,7 @@
 
 #include "cli/options.hpp"
 #include "cli/scene_input.hpp"
+#include "trace/names.hpp"
 
 namespace setka::cli {
 
@@ -51,31 +52,10 @@ void PictureOptions::add_to(CLI::App& app, RenderOptions& render) {
     add_parsed(app, "--size", size, parse_size, "WxH", "pixels", "1280x720");
     add_integer(app, "--samples", render.samples_per_axis, {1, 16}, "samples a pixel, along each axis");
     add_integer(app, "--depth", render.max_depth, {0, 16}, "mirror and refraction rays after the first");
-    add_choice<View>(app, "--view", render.view,
-                     {{"shaded", View::Shaded},
-                      {"normals", View::Normals},
-                      {"depth", View::Depth},
-                      {"steps", View::Steps},
-                      {"tests", View::Tests}},
-                     "what a pixel shows; steps and tests are heat maps of the work a ray makes");
+    add_choice(app, "--view", render.view, view_names(),
+               "what a pixel shows; steps and tests are heat maps of the work a ray makes");
 }
 
 void PictureOptions::complete(RenderOptions& render) const { std::tie(render.width, render.height) = size; }
-
-const char* to_string(View view) {
-    switch (view) {
-        case View::Shaded:
-            return "shaded";
-        case View::Normals:
-            return "normals";
-        case View::Depth:
-            return "depth";
-        case View::Steps:
-            return "steps";
-        case View::Tests:
-            return "tests";
-    }
-    return "";
-}
 
 }  // namespace setka::cli

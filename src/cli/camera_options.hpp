@@ -37,7 +37,4 @@ struct PictureOptions {
     void complete(RenderOptions& render) const;
 };
 
-/// The word of --view.
-[[nodiscard]] const char* to_string(View view);
-
 }  // namespace setka::cli

@@ -9,6 +9,7 @@
 
 #include "cli/text.hpp"
 #include "core/digest.hpp"
+#include "trace/names.hpp"
 
 namespace setka::cli {
 
@@ -76,7 +77,7 @@ void print_table(const CompareReport& report) {
             const bool is_first = &step == &row.steps.front();
             fmt::print("{:<{}}  {:>10}  {:<11}  {:>9} {:>9} {:>9}   {}{}\n", is_first ? name : "", width,
                        is_first ? fmt::format("{:.2f}", row.build.wall_ms) : "",
-                       workload::to_string(step.step), rate_text(step.primary), rate_text(step.shadow),
+                       name_of(step.step), rate_text(step.primary), rate_text(step.shadow),
                        rate_text(step.diffuse), digest_of(step.fingerprint),
                        is_first ? std::string("  ") + verdict(report, i) : "");
         }
@@ -124,7 +125,7 @@ void print_findings(const CompareReport& report) {
 [[nodiscard]] ordered_json to_json(const StepFigures& step) {
     ordered_json digests;
     for (const auto& [name, digest] : step.fingerprint.parts()) digests[name] = digest.to_string();
-    return {{"step", workload::to_string(step.step)},
+    return {{"step", name_of(step.step)},
             {"primary", to_json(step.primary)},
             {"shadow", to_json(step.shadow)},
             {"diffuse", to_json(step.diffuse)},
@@ -159,7 +160,7 @@ void print_findings(const CompareReport& report) {
 
 [[nodiscard]] ordered_json to_json(const CompareWork& work) {
     ordered_json steps = ordered_json::array();
-    for (const GridStep step : work.steps) steps.push_back(workload::to_string(step));
+    for (const GridStep step : work.steps) steps.push_back(name_of(step));
     return {{"density", work.grid.density},
             {"max_cells_per_axis", work.grid.max_cells_per_axis},
             {"cell_tables", to_string(work.grid.cell_tables)},

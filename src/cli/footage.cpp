@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "core/digest.hpp"
 #include "setka/error.hpp"
@@ -84,10 +85,6 @@ SceneUpdate Footage::at(double moment) const {
     return at(Moment{static_cast<std::uint32_t>(within), within});
 }
 
-bool Footage::has_moving_camera() const {
-    return kind() == io::MotionKind::Keyframes && animation_->at(0).camera.has_value();
-}
-
 std::vector<Moment> Footage::moments(const MomentChoice& choice) const {
     const double rate = choice.frames_per_second;
     std::vector<Moment> moments;
@@ -124,6 +121,7 @@ class SceneDigest {
   public:
     template <typename... Ts>
     void add(const Ts&... values) {
+        static_assert((std::is_trivially_copyable_v<Ts> && ...));
         (digester_.add(std::as_bytes(std::span(&values, 1))), ...);
     }
     template <typename T>
@@ -135,7 +133,7 @@ class SceneDigest {
         add(std::uint64_t(camera.has_value()));
         if (camera) add(camera->eye, camera->target, camera->up, camera->vertical_fov_degrees);
     }
-    void add(const Scene& scene) {
+    void add_scene(const Scene& scene) {
         for (const Mesh& mesh : scene.meshes) {
             add_list(mesh.positions);
             add_list(mesh.triangles);
@@ -151,9 +149,10 @@ class SceneDigest {
         add_camera(scene.camera);
         add(scene.background);
     }
-    void add(const SceneUpdate& update) {
+    void add_update(const SceneUpdate& update) {
         for (const SceneUpdate::Placement& placement : update.placements) add(placement.instance, placement.transform);
         for (const SceneUpdate::Vertices& vertices : update.vertices) {
+            add(vertices.mesh);
             add_list(vertices.positions);
             add_list(vertices.normals);
         }
@@ -170,9 +169,9 @@ class SceneDigest {
 std::string Footage::digest() const {
     constexpr int poses = 32;
     SceneDigest digest;
-    digest.add(scene_);
+    digest.add_scene(scene_);
     for (int i = 0; kind() == io::MotionKind::Keyframes && i <= poses; ++i)
-        digest.add(at(animation_->duration_seconds() * i / poses));
+        digest.add_update(at(animation_->duration_seconds() * i / poses));
     return digest.text();
 }
 

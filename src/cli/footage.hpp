@@ -51,8 +51,6 @@ class Footage {
     /// A digest of everything that is seen at the first moment, and of where it is at 33 moments of an animation: what other files than
     /// those of files(), such as buffers and materials, have a part in.
     [[nodiscard]] std::string digest() const;
-    /// The camera moves by itself.
-    [[nodiscard]] bool has_moving_camera() const;
 
   private:
     std::optional<io::Animation> animation_;  ///< none: a built-in scene

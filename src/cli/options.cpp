@@ -8,6 +8,8 @@
 #include <cmath>
 #include <limits>
 
+#include "trace/names.hpp"
+
 namespace setka::cli {
 
 namespace {
@@ -172,8 +174,7 @@ void add_grid_options(CLI::App& app, GridOptions& options) {
 }
 
 void add_step_option(CLI::App& app, GridStep& step) {
-    add_choice<GridStep>(app, "--step", step, {{"dda", GridStep::Dda}, {"branch-free", GridStep::BranchFree}},
-                         "how a ray moves from cell to cell; the result is the same");
+    add_choice(app, "--step", step, step_names(), "how a ray moves from cell to cell; the result is the same");
 }
 
 }  // namespace setka::cli

@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "cli/text.hpp"
-#include "view/script.hpp"
+#include "trace/names.hpp"
 
 namespace setka::view {
 

@@ -13,6 +13,7 @@
 #include "setka/device.hpp"
 #include "setka/error.hpp"
 #include "setka/io.hpp"
+#include "trace/names.hpp"
 
 namespace setka::view {
 
@@ -35,7 +36,7 @@ T number(const std::string& word, T lowest, T highest, const std::string& accept
 }
 
 template <typename T>
-T choice(const std::string& word, const std::vector<std::pair<std::string, T>>& choices,
+T choice(const std::string& word, const Names<T>& choices,
          const std::string& command) {
     std::string accepted;
     for (const auto& [name, value] : choices) {
@@ -141,21 +142,6 @@ decltype(Command::what) read_command(const Words& words) {
 }
 
 }  // namespace
-
-const std::vector<std::pair<std::string, View>>& view_names() {
-    static const std::vector<std::pair<std::string, View>> names{{"shaded", View::Shaded},
-                                                                 {"normals", View::Normals},
-                                                                 {"depth", View::Depth},
-                                                                 {"steps", View::Steps},
-                                                                 {"tests", View::Tests}};
-    return names;
-}
-
-const std::vector<std::pair<std::string, GridStep>>& step_names() {
-    static const std::vector<std::pair<std::string, GridStep>> names{{"dda", GridStep::Dda},
-                                                                     {"branch-free", GridStep::BranchFree}};
-    return names;
-}
 
 std::vector<Command> read_script(const std::filesystem::path& file) {
     std::ifstream stream(file);

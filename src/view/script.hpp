@@ -62,8 +62,4 @@ struct Command {
 /// Throws InvalidData that names file, line and command, and says what would be accepted.
 [[nodiscard]] std::vector<Command> read_script(const std::filesystem::path& file);
 
-/// The names of views and steps, as commands and command lines spell them.
-[[nodiscard]] const std::vector<std::pair<std::string, View>>& view_names();
-[[nodiscard]] const std::vector<std::pair<std::string, GridStep>>& step_names();
-
 }  // namespace setka::view

@@ -14,6 +14,7 @@
 
 #include "setka/error.hpp"
 #include "setka/io.hpp"
+#include "trace/names.hpp"
 #include "view/fly_camera.hpp"
 #include "view/panel.hpp"
 #include "view/script.hpp"
@@ -36,13 +37,6 @@ constexpr double frames_a_second = 24;
 
 enum class Input { Person, Script };
 enum class Shown { OnScreen, Captured };
-
-template <typename T>
-std::string name_of(T value, const std::vector<std::pair<std::string, T>>& names) {
-    for (const auto& [name, other] : names)
-        if (other == value) return name;
-    return {};
-}
 
 WindowSize window_size_for(std::uint32_t width, std::uint32_t height) {
     return {static_cast<int>(width) + panel_width, static_cast<int>(height)};
@@ -277,8 +271,8 @@ class Session {
     void obey(const Report&) const {
         const Frame frame = frame_ ? *frame_ : Frame{};
         fmt::print("{}\n", nlohmann::ordered_json{{"device", frame.facts.device},
-                                                  {"view", name_of(settings_.view, view_names())},
-                                                  {"step", name_of(settings_.step, step_names())},
+                                                  {"view", name_of(settings_.view)},
+                                                  {"step", name_of(settings_.step)},
                                                   {"density", frame.facts.density},
                                                   {"moment", frame.facts.moment},
                                                   {"triangles", frame.facts.triangles},

@@ -10,6 +10,8 @@
 #include <cstring>
 #include <span>
 
+#include "trace/names.hpp"
+
 namespace setka::workload {
 
 namespace {
@@ -198,7 +200,7 @@ class StepComparison {
 
   public:
     StepComparison(const Answers& reference, const Results& expected, GridStep step, const Results& results)
-        : reference_(reference), expected_(expected), step_(workload::to_string(step)), results_(results) {}
+        : reference_(reference), expected_(expected), step_(name_of(step)), results_(results) {}
 
     [[nodiscard]] MaybeDifference primary() const {
         return list_difference("primary hit", expected_.primary, results_.primary,
@@ -244,8 +246,6 @@ std::string Difference::to_string() const {
         text += " (" + std::to_string(differing) + " of " + std::to_string(total) + " differ)";
     return text + "\n  reference: " + reference + "\n  other:     " + other;
 }
-
-const char* to_string(GridStep step) noexcept { return step == GridStep::Dda ? "dda" : "branch-free"; }
 
 std::optional<Difference> first_difference(const Answers& reference, const Answers& other) {
     std::vector<StepComparison> steps;

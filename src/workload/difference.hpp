@@ -44,8 +44,6 @@ struct Difference {
     [[nodiscard]] std::string to_string() const;
 };
 
-[[nodiscard]] const char* to_string(GridStep step) noexcept;
-
 /// Nothing if every byte is the same. Each step of `other` is held against the reference's first: two steps
 /// of one device are compared by first_difference(answers, answers).
 [[nodiscard]] std::optional<Difference> first_difference(const Answers& reference, const Answers& other);
