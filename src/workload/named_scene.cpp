@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 
 #include "setka/error.hpp"
 #include "setka/scenes.hpp"
 #include "workload/snapshot.hpp"
 #ifdef SETKA_HAS_IO
+#include "setka/animation.hpp"
 #include "setka/io.hpp"
 #endif
 
@@ -27,6 +29,33 @@ namespace {
 }
 
 #ifdef SETKA_HAS_IO
+/// What moves, at a moment.
+struct Pose {
+    std::filesystem::path source;
+    double moment = 0;
+
+    [[nodiscard]] Scene load() const {
+        const io::Animation animation(source);
+        Scene scene = animation.scene();
+        if (animation.kind() != io::MotionKind::Sequence) apply(scene, animation.at(moment));
+        else if (moment == std::floor(moment)) apply(scene, animation.frame(static_cast<std::uint32_t>(moment)));
+        else throw Error(ErrorCategory::InvalidArgument, "frames have whole numbers, not " + std::to_string(moment));
+        return scene;
+    }
+};
+
+/// Nothing if the name has no moment, or if there is nothing of that name.
+[[nodiscard]] std::optional<Pose> find_pose(const std::filesystem::path& folder, const std::string& name) {
+    const std::size_t plus = name.rfind('+');
+    if (plus == std::string::npos || !std::filesystem::exists(folder / name.substr(0, plus))) return {};
+    double moment = 0;
+    const char* const end = name.data() + name.size();
+    const auto read = std::from_chars(name.data() + plus + 1, end, moment);
+    if (read.ptr != end || read.ec != std::errc{} || !(moment >= 0 && moment < 1e9))
+        throw Error(ErrorCategory::InvalidArgument, "'" + name + "' has no moment after the plus");
+    return Pose{folder / name.substr(0, plus), moment};
+}
+
 /// The file itself, or the OBJ files of a folder in the order of their names.
 [[nodiscard]] std::vector<std::filesystem::path> files_of(const std::filesystem::path& path) {
     if (!std::filesystem::is_directory(path)) return {path};
@@ -66,7 +95,7 @@ void add_names(const std::filesystem::path& folder, const std::filesystem::path&
 
 bool NamedScene::exists(const std::filesystem::path& folder) const {
 #ifdef SETKA_HAS_IO
-    if (std::filesystem::exists(folder / name)) return true;
+    if (std::filesystem::exists(folder / name) || find_pose(folder, name)) return true;
 #endif
     return is_built_in(name.substr(0, name.find(':'))) || std::filesystem::exists(snapshot_of(folder, name));
 }
@@ -83,6 +112,7 @@ std::optional<Scene> NamedScene::load(const std::filesystem::path& folder) const
     }
 #ifdef SETKA_HAS_IO
     if (std::filesystem::exists(folder / name)) return io::load_scene(files_of(folder / name));
+    if (const auto pose = find_pose(folder, name)) return pose->load();
 #endif
     const std::filesystem::path snapshot = snapshot_of(folder, name);
     if (std::filesystem::exists(snapshot)) return read_snapshot(snapshot);

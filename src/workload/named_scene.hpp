@@ -12,7 +12,8 @@
 namespace setka::workload {
 
 /// "spheres:1000000", or a path in the folder: of a file, "scan/dragon.obj", or of a folder, all of whose OBJ files are one
-/// scene. A build without setka::io reads the snapshot "scan/dragon.obj.snapshot" instead.
+/// scene. What moves has a moment, "gltf/CesiumMilkTruck.glb+0.5": seconds of an animation, the number of a sequence's frame.
+/// A build without setka::io reads the snapshot "scan/dragon.obj.snapshot" instead.
 struct NamedScene {
     std::string name;
 

@@ -2,6 +2,7 @@
 /// What do the golden digests have to be? Computes them on one device and prints the file
 /// tests/golden/digests.txt; or writes snapshots of the scene files for a machine whose build cannot read
 /// them.
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <exception>
@@ -19,11 +20,13 @@ namespace fs = std::filesystem;
 using namespace setka;
 
 constexpr const char* usage =
-    "usage: setka_golden digests SCENES [DEVICE]   prints the digests that DEVICE computes\n"
+    "usage: setka_golden digests SCENES [DEVICE [SCENE...]]\n"
+    "                                              prints the digests that DEVICE computes, of all cases or of these scenes\n"
     "       setka_golden snapshots SCENES FOLDER [PART...]\n"
     "                                              writes a snapshot of each scene file that has digests, or "
     "else of every one\n"
-    "                                              in these parts of SCENES, as scan\n";
+    "                                              in these parts of SCENES, as scan, or of one scene, as "
+    "gltf/Duck.glb\n";
 
 [[nodiscard]] Scene load(const std::string& name, const fs::path& scenes) {
     if (auto scene = workload::NamedScene{name}.load(scenes)) return std::move(*scene);
@@ -31,7 +34,14 @@ constexpr const char* usage =
                 "there is no " + (scenes / name).string() + " and no snapshot of it");
 }
 
-void print_digests(const fs::path& scenes, const std::string& selector) {
+[[nodiscard]] std::vector<workload::GoldenCase> cases_of(std::span<char* const> names) {
+    if (names.empty()) return golden::cases();
+    std::vector<workload::GoldenCase> cases;
+    for (const char* name : names) cases.push_back({name});
+    return cases;
+}
+
+void print_digests(const fs::path& scenes, const std::string& selector, std::span<char* const> names) {
     const Device device = Device::open(selector);
     Queue queue = device.make_queue();
     const DeviceInfo& info = device.info();
@@ -41,7 +51,7 @@ void print_digests(const fs::path& scenes, const std::string& selector) {
                 workload::fingerprint_rays_size, workload::fingerprint_rays_size, workload::fingerprint_width,
                 workload::fingerprint_height);
     std::printf("# scene viewpoint density tables primary shadow diffuse picture\n");
-    for (const workload::GoldenCase& what : golden::cases()) {
+    for (const workload::GoldenCase& what : cases_of(names)) {
         const Scene scene = load(what.scene, scenes);
         const GridOptions options{.density = what.density};
         const auto take = [&](GridStep step) {
@@ -62,6 +72,10 @@ void print_digests(const fs::path& scenes, const std::string& selector) {
             if (what.scene.find('/') != std::string::npos)
                 names.push_back(what.scene);  // the others are built in
     for (const char* part : parts) {
+        if (workload::NamedScene{part}.exists(scenes) && !fs::is_directory(scenes / part)) {
+            names.emplace_back(part);
+            continue;
+        }
         const auto more = workload::names_of_scenes(scenes, part);
         if (more.empty())
             throw Error(ErrorCategory::InvalidArgument, "there is no scene in " + (scenes / part).string());
@@ -85,9 +99,9 @@ void write_snapshots(const fs::path& scenes, const fs::path& folder, std::span<c
 int main(int argc, char** argv) {
     try {
         const std::string verb = argc > 1 ? argv[1] : "";
-        if (verb == "digests" && (argc == 3 || argc == 4)) print_digests(argv[2], argc == 4 ? argv[3] : "");
-        else if (verb == "snapshots" && argc >= 4)
-            write_snapshots(argv[2], argv[3], {argv + 4, static_cast<std::size_t>(argc - 4)});
+        const std::span<char* const> rest(argv + std::min(argc, 4), argv + argc);
+        if (verb == "digests" && argc >= 3) print_digests(argv[2], argc > 3 ? argv[3] : "", rest);
+        else if (verb == "snapshots" && argc > 3) write_snapshots(argv[2], argv[3], rest);
         else return std::fputs(usage, stderr), 2;
         return 0;
     } catch (const std::exception& error) {
