@@ -39,15 +39,14 @@ SK_KERNEL void trace_brute_all(sk_u32 n, sk_u32 first, sk_trace_params params, S
 
 SK_KERNEL void trace_grid_count(sk_u32 n, sk_u32 first, sk_u32 most, SetkaGridHeader grid, sk_trace_params params,
                                 SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
-                                SK_GLOBAL sk_u32* hit_counts, SK_GLOBAL const sk_block* blocks, SK_GLOBAL const sk_u32* groups,
-                                  SK_GLOBAL const sk_cell_list* cells, SK_GLOBAL const sk_u32* references,
+                                SK_GLOBAL sk_u32* hit_counts, SK_GLOBAL const sk_block* blocks, SK_GLOBAL const sk_cell_list* cells, SK_GLOBAL const sk_u32* references,
                                 SK_GLOBAL const float* triangles, SK_GLOBAL const sk_u32* instance_starts,
                                 SK_GLOBAL const SetkaInstance* instances) {
     const sk_u32 i = first + sk_global_id();
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
         const sk_grid_tables tables =
-            sk_make_tables(blocks, groups, cells, references, triangles, instance_starts, instances);
+            sk_make_tables(blocks, cells, references, triangles, instance_starts, instances);
         const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
         hit_counts[i] = sk_walk_grid_all(grid, params, ray, tables, skipped, (SK_GLOBAL SetkaHit*)0, most, 0);
     }
@@ -56,8 +55,7 @@ SK_KERNEL void trace_grid_count(sk_u32 n, sk_u32 first, sk_u32 most, SetkaGridHe
 SK_KERNEL void trace_grid_all(sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
                               SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
                               SK_GLOBAL const sk_u32* hit_offsets, SK_GLOBAL SetkaHit* hits,
-                              SK_GLOBAL const sk_block* blocks, SK_GLOBAL const sk_u32* groups,
-                                  SK_GLOBAL const sk_cell_list* cells,
+                              SK_GLOBAL const sk_block* blocks, SK_GLOBAL const sk_cell_list* cells,
                               SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
                               SK_GLOBAL const sk_u32* instance_starts,
                               SK_GLOBAL const SetkaInstance* instances) {
@@ -65,7 +63,7 @@ SK_KERNEL void trace_grid_all(sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_t
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
         const sk_grid_tables tables =
-            sk_make_tables(blocks, groups, cells, references, triangles, instance_starts, instances);
+            sk_make_tables(blocks, cells, references, triangles, instance_starts, instances);
         const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
         const sk_u32 start = hit_offsets[i];
         const sk_u32 found =

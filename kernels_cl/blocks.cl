@@ -29,22 +29,19 @@ SK_KERNEL void blocks_apply(sk_u32 n, sk_u32 elements, sk_u32 groups, SK_GLOBAL 
     sk_blocks_apply(scratch, pair_scratch, n, elements, groups, sums, blocks);
 }
 
-SK_KERNEL void blocks_count(sk_u32 n, sk_u32 alone, SK_GLOBAL const sk_u32* counters, SK_GLOBAL sk_block* blocks,
-                            SK_GLOBAL sk_u32* totals) {
+/* Marks lie behind the counters. */
+SK_KERNEL void blocks_count(sk_u32 n, sk_u32 alone, SetkaGridHeader grid, SK_GLOBAL sk_u32* counters,
+                            SK_GLOBAL sk_block* blocks, SK_GLOBAL sk_u32* totals) {
     const sk_u32 b = sk_global_id();
-    if (b < n) sk_count_block(b, alone, counters, blocks, totals);
+    if (b < n) sk_count_block(b, alone, grid, counters, counters + (size_t)n * SK_BLOCK_CELLS, blocks, totals);
 }
 
-SK_KERNEL void blocks_lay_out(sk_u32 n, sk_u32 alone, SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_block* blocks,
-                              SK_GLOBAL sk_cell_list* cells, SK_GLOBAL sk_piece* pieces, SK_GLOBAL sk_u32* totals) {
+SK_KERNEL void blocks_lay_out(sk_u32 n, sk_u32 alone, SetkaGridHeader grid, SK_GLOBAL sk_u32* counters,
+                              SK_GLOBAL sk_block* blocks, SK_GLOBAL sk_cell_list* cells, SK_GLOBAL sk_piece* pieces,
+                              SK_GLOBAL sk_u32* totals) {
     const sk_u32 b = sk_global_id();
-    if (b < n) sk_lay_out_block(b, alone, counters, blocks, cells, pieces, totals);
-}
-
-SK_KERNEL void blocks_group(sk_u32 n, SetkaGridHeader grid, SK_GLOBAL const sk_block* blocks,
-                            SK_GLOBAL sk_u32* groups) {
-    const sk_u32 group = sk_global_id();
-    if (group < n) sk_group_blocks(group, grid, blocks, groups);
+    if (b < n)
+        sk_lay_out_block(b, alone, grid, counters, counters + (size_t)n * SK_BLOCK_CELLS, blocks, cells, pieces, totals);
 }
 
 /* A work-item for each `run` triangles, elements first to n - 1. */
@@ -105,16 +102,16 @@ SK_KERNEL void lists_merge(sk_u32 n, sk_u32 width, sk_u32 is_last, SK_GLOBAL con
 }
 
 SK_KERNEL void import_blocks(sk_u32 n, SetkaGridHeader grid, SK_GLOBAL const sk_u32* counts,
-                             SK_GLOBAL sk_block* blocks, SK_GLOBAL sk_u32* totals) {
+                             SK_GLOBAL sk_u32* marks, SK_GLOBAL sk_block* blocks, SK_GLOBAL sk_u32* totals) {
     const sk_u32 b = sk_global_id();
-    if (b < n) sk_import_block(b, grid, counts, blocks, totals);
+    if (b < n) sk_import_block(b, grid, counts, marks, blocks, totals);
 }
 
 SK_KERNEL void import_cells(sk_u32 n, SetkaGridHeader grid, SK_GLOBAL const sk_i32* offsets,
-                            SK_GLOBAL const sk_u32* counts, SK_GLOBAL sk_block* blocks,
-                            SK_GLOBAL sk_cell_list* cells, SK_GLOBAL sk_u32* places) {
+                            SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* marks,
+                            SK_GLOBAL sk_block* blocks, SK_GLOBAL sk_cell_list* cells, SK_GLOBAL sk_u32* places) {
     const sk_u32 b = sk_global_id();
-    if (b < n) sk_import_cells(b, grid, offsets, counts, blocks, cells, places);
+    if (b < n) sk_import_cells(b, grid, offsets, counts, marks, blocks, cells, places);
 }
 
 SK_KERNEL void export_counts(sk_u32 n, SetkaGridHeader grid, SK_GLOBAL const sk_block* blocks,

@@ -42,21 +42,19 @@ SK_KERNEL void trace_brute_any(sk_u32 n, sk_u32 first, sk_trace_params params, S
 SK_TEAM_KERNEL void trace_grid_closest_dda(sk_u32 n, sk_u32 first, SetkaGridHeader grid,
                                            sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
                                            SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL SetkaHit* hits,
-                                           SK_GLOBAL const sk_block* blocks, SK_GLOBAL const sk_u32* groups,
-                                           SK_GLOBAL const sk_cell_list* cells,
+                                           SK_GLOBAL const sk_block* blocks, SK_GLOBAL const sk_cell_list* cells,
                                            SK_GLOBAL const sk_u32* references,
                                            SK_GLOBAL const float* triangles,
                                            SK_GLOBAL const sk_u32* instance_starts,
                                            SK_GLOBAL const SetkaInstance* instances) {
     SK_SHARED_STORAGE sk_team team;
     sk_trace_closest(&team, n, first + sk_global_id() * SK_WIDTH, grid, params, rays, skip, hits,
-                     sk_make_tables(blocks, groups, cells, references, triangles, instance_starts, instances));
+                     sk_make_tables(blocks, cells, references, triangles, instance_starts, instances));
 }
 
 SK_KERNEL void trace_grid_closest_free(sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
                                        SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
-                                       SK_GLOBAL SetkaHit* hits, SK_GLOBAL const sk_block* blocks, SK_GLOBAL const sk_u32* groups,
-                                  SK_GLOBAL const sk_cell_list* cells,
+                                       SK_GLOBAL SetkaHit* hits, SK_GLOBAL const sk_block* blocks, SK_GLOBAL const sk_cell_list* cells,
                                        SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
                                        SK_GLOBAL const sk_u32* instance_starts,
                                        SK_GLOBAL const SetkaInstance* instances) {
@@ -64,7 +62,7 @@ SK_KERNEL void trace_grid_closest_free(sk_u32 n, sk_u32 first, SetkaGridHeader g
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
         const sk_grid_tables tables =
-            sk_make_tables(blocks, groups, cells, references, triangles, instance_starts, instances);
+            sk_make_tables(blocks, cells, references, triangles, instance_starts, instances);
         const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
         const sk_walk walk = sk_walk_cells(grid, params, ray, tables, skipped, 0);
         hits[i] = sk_make_hit(params, ray, instance_starts, walk.best);
@@ -74,19 +72,18 @@ SK_KERNEL void trace_grid_closest_free(sk_u32 n, sk_u32 first, SetkaGridHeader g
 SK_TEAM_KERNEL void trace_grid_any_dda(sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
                                        SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
                                        SK_GLOBAL sk_u32* occluded, SK_GLOBAL const sk_block* blocks,
-                                       SK_GLOBAL const sk_u32* groups, SK_GLOBAL const sk_cell_list* cells,
+                                       SK_GLOBAL const sk_cell_list* cells,
                                        SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
                                        SK_GLOBAL const sk_u32* instance_starts,
                                        SK_GLOBAL const SetkaInstance* instances) {
     SK_SHARED_STORAGE sk_team team;
     sk_trace_any(&team, n, first + sk_global_id() * SK_WIDTH, grid, params, rays, skip, occluded,
-                 sk_make_tables(blocks, groups, cells, references, triangles, instance_starts, instances));
+                 sk_make_tables(blocks, cells, references, triangles, instance_starts, instances));
 }
 
 SK_KERNEL void trace_grid_any_free(sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
                                    SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
-                                   SK_GLOBAL sk_u32* occluded, SK_GLOBAL const sk_block* blocks, SK_GLOBAL const sk_u32* groups,
-                                  SK_GLOBAL const sk_cell_list* cells,
+                                   SK_GLOBAL sk_u32* occluded, SK_GLOBAL const sk_block* blocks, SK_GLOBAL const sk_cell_list* cells,
                                    SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
                                    SK_GLOBAL const sk_u32* instance_starts,
                                    SK_GLOBAL const SetkaInstance* instances) {
@@ -94,7 +91,7 @@ SK_KERNEL void trace_grid_any_free(sk_u32 n, sk_u32 first, SetkaGridHeader grid,
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
         const sk_grid_tables tables =
-            sk_make_tables(blocks, groups, cells, references, triangles, instance_starts, instances);
+            sk_make_tables(blocks, cells, references, triangles, instance_starts, instances);
         const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
         const sk_walk walk = sk_walk_cells(grid, params, ray, tables, skipped, 1);
         occluded[i] = walk.best.triangle != SETKA_NO_HIT ? 1u : 0u;
@@ -104,19 +101,18 @@ SK_KERNEL void trace_grid_any_free(sk_u32 n, sk_u32 first, SetkaGridHeader grid,
 SK_TEAM_KERNEL void trace_grid_cost_dda(sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
                                         SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
                                         SK_GLOBAL SetkaTraceCost* costs, SK_GLOBAL const sk_block* blocks,
-                                        SK_GLOBAL const sk_u32* groups, SK_GLOBAL const sk_cell_list* cells,
+                                        SK_GLOBAL const sk_cell_list* cells,
                                         SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
                                         SK_GLOBAL const sk_u32* instance_starts,
                                         SK_GLOBAL const SetkaInstance* instances) {
     SK_SHARED_STORAGE sk_team team;
     sk_trace_cost(&team, n, first + sk_global_id(), grid, params, rays, skip, costs,
-                  sk_make_tables(blocks, groups, cells, references, triangles, instance_starts, instances));
+                  sk_make_tables(blocks, cells, references, triangles, instance_starts, instances));
 }
 
 SK_KERNEL void trace_grid_cost_free(sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
                                     SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
-                                    SK_GLOBAL SetkaTraceCost* costs, SK_GLOBAL const sk_block* blocks, SK_GLOBAL const sk_u32* groups,
-                                  SK_GLOBAL const sk_cell_list* cells,
+                                    SK_GLOBAL SetkaTraceCost* costs, SK_GLOBAL const sk_block* blocks, SK_GLOBAL const sk_cell_list* cells,
                                     SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
                                     SK_GLOBAL const sk_u32* instance_starts,
                                     SK_GLOBAL const SetkaInstance* instances) {
@@ -124,7 +120,7 @@ SK_KERNEL void trace_grid_cost_free(sk_u32 n, sk_u32 first, SetkaGridHeader grid
     if (i < n) {
         const sk_working_ray ray = sk_prepare_ray(params, rays[i]);
         const sk_grid_tables tables =
-            sk_make_tables(blocks, groups, cells, references, triangles, instance_starts, instances);
+            sk_make_tables(blocks, cells, references, triangles, instance_starts, instances);
         const sk_u32 skipped = sk_skipped_triangle(params, instance_starts, skip, i);
         const sk_walk walk = sk_walk_cells(grid, params, ray, tables, skipped, 0);
         costs[i] = walk.cost;

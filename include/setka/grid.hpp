@@ -83,7 +83,6 @@ struct GridTables {
 /// cell and 8 bytes a list. May change from version to version (src/device/grid/blocks.h).
 struct CompactTables {
     Buffer<std::uint32_t> blocks;      ///< 4 words each
-    Buffer<std::uint32_t> groups;      ///< 2 words for each 4 x 4 x 4 blocks, a bit for each that is not empty
     Buffer<std::uint32_t> cells;       ///< 2 words each
     Buffer<std::uint32_t> references;  ///< block after block
     std::uint32_t longest_list = 0;    ///< 0 where no list is long, else the longest one's length

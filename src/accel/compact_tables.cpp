@@ -45,9 +45,18 @@ std::uint32_t block_count(const ::SetkaGridHeader& header) noexcept {
     return in_fours(header.dims[0]) * in_fours(header.dims[1]) * in_fours(header.dims[2]);
 }
 
-std::uint32_t group_count(const ::SetkaGridHeader& header) noexcept {
-    return in_fours(in_fours(header.dims[0])) * in_fours(in_fours(header.dims[1])) *
-           in_fours(in_fours(header.dims[2]));
+std::uint32_t mark_count(const ::SetkaGridHeader& header) noexcept {
+    return (in_fours(header.dims[0]) + 15) / 16 * in_fours(header.dims[1]) * in_fours(header.dims[2]);
+}
+
+std::uint64_t counter_count(const ::SetkaGridHeader& header) noexcept {
+    return std::uint64_t(block_count(header)) * SK_BLOCK_CELLS + mark_count(header);
+}
+
+Buffer<std::uint32_t> make_counters(Queue& queue, const ::SetkaGridHeader& header) {
+    auto counters = queue.make_buffer<std::uint32_t>(counter_count(header), "cell counters and marks");
+    queue.impl().fill(*counters.memory(), 0, counters.size_bytes());
+    return counters;
 }
 
 std::uint64_t slot_count(const std::uint32_t (&dims)[3]) noexcept {
@@ -96,24 +105,18 @@ void enqueue_block_starts(Queue& queue, const Buffer<std::uint64_t>& sums,
                   layout.groups, sums, blocks);
 }
 
-Buffer<std::uint32_t> make_groups(Queue& queue, const ::SetkaGridHeader& header,
-                                  const Buffer<std::uint32_t>& blocks) {
-    const std::uint32_t n = group_count(header);
-    auto groups = queue.make_buffer<std::uint32_t>(n * group_words, "groups of blocks");
-    launch_items(queue, Kernel::blocks_group, n, header, blocks, groups);
-    return groups;
-}
-
 CompactTables import_tables(Queue& queue, const ::SetkaGridHeader& header, const GridTables& flat) {
     check_cells("offsets", flat.offsets.size(), header);
     check_cells("counts", flat.counts.size(), header);
     CompactTables tables;
     const std::uint32_t n = block_count(header);
     tables.blocks = queue.make_buffer<std::uint32_t>(n * block_words, "blocks");
+    const auto marks = queue.make_buffer<std::uint32_t>(mark_count(header), "marks of blocks");
+    queue.impl().fill(*marks.memory(), 0, marks.size_bytes());
     BlockTotals totals;
     {
         const auto words = make_totals(queue);
-        launch_items(queue, Kernel::import_blocks, n, header, flat.counts, tables.blocks, words);
+        launch_items(queue, Kernel::import_blocks, n, header, flat.counts, marks, tables.blocks, words);
         const auto sums = enqueue_block_sums(queue, tables.blocks, words);
         totals = read_totals(queue, words);
         if (totals.pairs != flat.references.size())
@@ -123,11 +126,10 @@ CompactTables import_tables(Queue& queue, const ::SetkaGridHeader& header, const
         enqueue_block_starts(queue, sums, tables.blocks);
     }
     tables.longest_list = totals.longest_list;
-    tables.groups = make_groups(queue, header, tables.blocks);
     tables.cells = queue.make_buffer<std::uint32_t>(totals.cells * cell_words, "cells");
     tables.references = queue.make_buffer<std::uint32_t>(flat.references.size(), "references of blocks");
     const auto places = queue.make_buffer<std::uint32_t>(totals.cells, "places of lists");
-    launch_items(queue, Kernel::import_cells, n, header, flat.offsets, flat.counts, tables.blocks,
+    launch_items(queue, Kernel::import_cells, n, header, flat.offsets, flat.counts, marks, tables.blocks,
                  tables.cells, places);
     move_lists(queue, tables, places, 0, flat.references, tables.references);
     return tables;
@@ -136,11 +138,9 @@ CompactTables import_tables(Queue& queue, const ::SetkaGridHeader& header, const
 std::uint64_t import_bytes(const Device& device, const ::SetkaGridHeader& header, std::uint32_t cells) {
     constexpr std::uint64_t word = sizeof(std::uint32_t);
     const std::uint32_t n = block_count(header);
-    return n * block_words * word +
+    return (n * block_words + mark_count(header)) * word +
            std::max(SK_TOTALS * word + block_sums_bytes(device, n),
-                    (group_count(header) * group_words + cells * (cell_words + std::uint64_t(1)) +
-                     header.reference_count) *
-                        word);
+                    (cells * (cell_words + std::uint64_t(1)) + header.reference_count) * word);
 }
 
 GridTables export_tables(Queue& queue, const ::SetkaGridHeader& header, const CompactTables& tables) {

@@ -9,15 +9,19 @@
 
 namespace setka {
 
-/// Blocks of 4 x 4 x 4 cells, and groups of as many blocks.
+/// Blocks of 4 x 4 x 4 cells.
 [[nodiscard]] std::uint32_t block_count(const ::SetkaGridHeader& header) noexcept;
-[[nodiscard]] std::uint32_t group_count(const ::SetkaGridHeader& header) noexcept;
+/// Words of the blocks' marks, which a build needs (device/grid/blocks.h).
+[[nodiscard]] std::uint32_t mark_count(const ::SetkaGridHeader& header) noexcept;
+/// A counter for each cell of all blocks, with the marks behind them, all 0.
+[[nodiscard]] Buffer<std::uint32_t> make_counters(Queue& queue, const ::SetkaGridHeader& header);
+[[nodiscard]] std::uint64_t counter_count(const ::SetkaGridHeader& header) noexcept;
 
 /// Cells of all blocks, those outside the grid included.
 [[nodiscard]] std::uint64_t slot_count(const std::uint32_t (&dims)[3]) noexcept;
 
-/// Words of a block, a group and a cell's record.
-inline constexpr std::uint64_t block_words = 4, group_words = 2, cell_words = 2;
+/// Words of a block's and a cell's record.
+inline constexpr std::uint64_t block_words = 4, cell_words = 2;
 
 /// What the device tells of counted blocks.
 struct BlockTotals {
@@ -42,10 +46,6 @@ struct BlockTotals {
 /// The rest of the scan: each block learns where its cells and lists begin.
 void enqueue_block_starts(Queue& queue, const Buffer<std::uint64_t>& sums,
                           const Buffer<std::uint32_t>& blocks);
-
-/// The bits of all blocks.
-[[nodiscard]] Buffer<std::uint32_t> make_groups(Queue& queue, const ::SetkaGridHeader& header,
-                                                const Buffer<std::uint32_t>& blocks);
 
 /// Flat tables as compact ones; waits. Throws InvalidArgument if offsets or counts do not have one element for each cell, or
 /// if the counts do not add up to the references.

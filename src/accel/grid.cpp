@@ -38,7 +38,6 @@ Grid::Grid(WorldGeometry geometry, const ::SetkaGridHeader& header, CompactTable
 std::vector<Section> Grid::sections() const {
     auto sections = geometry_sections(geometry());
     sections.push_back({"blocks", tables_.blocks.size_bytes()});
-    sections.push_back({"groups", tables_.groups.size_bytes()});
     sections.push_back({"cells", tables_.cells.size_bytes()});
     sections.push_back({"references", tables_.references.size_bytes()});
     return sections;

@@ -48,9 +48,7 @@ constexpr std::uint64_t word = sizeof(std::uint32_t);
 /// Bytes of the finished grid's sections.
 std::uint64_t table_bytes_of(const WorldGeometry& geometry, const ::SetkaGridHeader& header,
                              std::uint32_t cells) {
-    std::uint64_t sum = (block_count(header) * block_words + group_count(header) * group_words +
-                         cells * cell_words + header.reference_count) *
-                        word;
+    std::uint64_t sum = (block_count(header) * block_words + cells * cell_words + header.reference_count) * word;
     for (const Section& section : geometry_sections(geometry)) sum += section.size_bytes;
     return sum;
 }

@@ -50,7 +50,7 @@ BlockTotals count_all(Queue& queue, const WorldGeometry& geometry, const ::Setka
     queue.impl().begin_stage("count");
     count.row_list = queue.make_buffer<std::uint32_t>(count.row_capacity * row_words, "rows of large triangles");
     queue.impl().fill(*count.totals.memory(), 0, count.totals.size_bytes());
-    queue.impl().fill(*count.counters.memory(), 0, count.counters.size_bytes());
+    count.counters = make_counters(queue, header);
     const std::uint32_t run = triangles_an_item(queue.device());
     launch_range(queue, Kernel::scatter_count, (n + run - 1) / run, triangles_a_launch(queue.device()) / run, run,
                  header, geometry.triangles,
@@ -59,7 +59,7 @@ BlockTotals count_all(Queue& queue, const WorldGeometry& geometry, const ::Setka
                  header, geometry.triangles, count.counters, count.row_capacity, count.row_list, count.totals);
     queue.impl().begin_stage("blocks");
     launch_items(queue, Kernel::blocks_count, block_count(header),
-                 longest_alone(queue.device()), count.counters, count.blocks, count.totals);
+                 longest_alone(queue.device()), header, count.counters, count.blocks, count.totals);
     count.sums = enqueue_block_sums(queue, count.blocks, count.totals);
     return read_totals(queue, count.totals);
 }
@@ -91,8 +91,6 @@ std::optional<ScatteredCount> count_scattered(Queue& queue, const WorldGeometry&
     held_bytes = scattered_count_bytes(queue.device(), header, count.row_capacity);
     count.totals = make_totals(queue);
     count.blocks = queue.make_buffer<std::uint32_t>(block_count(header) * block_words, "blocks");
-    count.counters =
-        queue.make_buffer<std::uint32_t>(std::size_t(block_count(header)) * SK_BLOCK_CELLS, "cell counters");
     count.reaches =
         queue.make_buffer<std::uint32_t>(header.triangle_count * reach_words, "cells of small triangles");
     BlockTotals totals = count_all(queue, geometry, header, count);
@@ -109,6 +107,7 @@ std::optional<ScatteredCount> count_scattered(Queue& queue, const WorldGeometry&
         count.row_capacity = totals.rows;
         held_bytes = scattered_count_bytes(queue.device(), header, count.row_capacity);
         count.row_list = {};
+        count.counters = {};
         count.sums = {};
         totals = count_all(queue, geometry, header, count);
     }
@@ -126,7 +125,7 @@ std::optional<ScatteredCount> count_scattered(Queue& queue, const WorldGeometry&
 std::uint64_t scattered_count_bytes(const Device& device, const ::SetkaGridHeader& header,
                                     std::uint32_t row_capacity) {
     const std::uint32_t blocks = block_count(header);
-    return (SK_TOTALS + blocks * (SK_BLOCK_CELLS + block_words) + header.triangle_count * reach_words +
+    return (SK_TOTALS + counter_count(header) + blocks * block_words + header.triangle_count * reach_words +
             row_capacity * row_words) *
                word +
            block_sums_bytes(device, blocks);
@@ -135,8 +134,7 @@ std::uint64_t scattered_count_bytes(const Device& device, const ::SetkaGridHeade
 std::uint64_t scattered_bytes(const Device& device, const ::SetkaGridHeader& header,
                               const ScatteredCount& count) {
     return scattered_count_bytes(device, header, count.row_capacity) +
-           (group_count(header) * group_words + count.cells * cell_words + header.reference_count +
-            count.pieces * (piece_words + 2 * SK_PIECE)) *
+           (count.cells * cell_words + header.reference_count + count.pieces * (piece_words + 2 * SK_PIECE)) *
                word;
 }
 
@@ -148,9 +146,8 @@ CompactTables build_scattered(Queue& queue, const WorldGeometry& geometry, const
     enqueue_block_starts(queue, count.sums, count.blocks);
     const std::uint32_t alone = longest_alone(queue.device());
     const auto pieces = queue.make_buffer<std::uint32_t>(count.pieces * piece_words, "pieces of lists");
-    launch_items(queue, Kernel::blocks_lay_out, block_count(header), alone, count.counters, count.blocks,
+    launch_items(queue, Kernel::blocks_lay_out, block_count(header), alone, header, count.counters, count.blocks,
                  tables.cells, pieces, count.totals);
-    tables.groups = make_groups(queue, header, count.blocks);
     queue.impl().begin_stage("place");
     tables.references = queue.make_buffer<std::uint32_t>(header.reference_count, "references");
     launch_range(queue, Kernel::scatter_place, header.triangle_count, triangles_a_launch(queue.device()), header,

@@ -32,9 +32,8 @@ std::uint64_t count_bytes(Queue& queue, std::uint64_t triangles, std::uint64_t r
 
 /// The bytes that finding out which cells are not empty holds.
 std::uint64_t mark_bytes(const Device& device, const ::SetkaGridHeader& header) {
-    const std::uint64_t blocks = block_count(header);
-    return (SK_TOTALS + blocks * (SK_BLOCK_CELLS + block_words)) * word +
-           block_sums_bytes(device, block_count(header));
+    const std::uint32_t blocks = block_count(header);
+    return (SK_TOTALS + counter_count(header) + blocks * block_words) * word + block_sums_bytes(device, blocks);
 }
 
 void count_rows(Queue& queue, const WorldGeometry& geometry, const ::SetkaGridHeader& header,
@@ -72,15 +71,13 @@ void count_pairs(Queue& queue, const WorldGeometry& geometry, ::SetkaGridHeader&
 void count_cells(Queue& queue, const WorldGeometry& geometry, const ::SetkaGridHeader& header,
                  SortedCount& count) {
     const std::uint32_t n = block_count(header);
-    const auto counters =
-        queue.make_buffer<std::uint32_t>(std::size_t(n) * SK_BLOCK_CELLS, "cell counters");
-    queue.impl().fill(*counters.memory(), 0, counters.size_bytes());
+    const auto counters = make_counters(queue, header);
     launch_range(queue, Kernel::grid_mark, static_cast<std::uint32_t>(count.rows),
                  rows_a_launch(queue.device(), header), header, geometry.triangles, count.row_triangles,
                  count.row_starts, counters);
     const auto blocks = queue.make_buffer<std::uint32_t>(n * block_words, "blocks");
     const auto totals = make_totals(queue);
-    launch_items(queue, Kernel::blocks_count, n, ~0u, counters, blocks, totals);
+    launch_items(queue, Kernel::blocks_count, n, ~0u, header, counters, blocks, totals);
     const auto sums = enqueue_block_sums(queue, blocks, totals);
     count.cells = read_totals(queue, totals).cells;
 }

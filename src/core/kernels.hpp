@@ -12,7 +12,7 @@
     X(grid_transform) X(grid_rows) X(grid_row_list) X(grid_count) X(grid_emit)                             \
     X(grid_cells_clear) X(grid_cells_mark) X(grid_cells_close) X(grid_cells_search)                        \
     X(grid_mark)                                                                                           \
-    X(blocks_reduce) X(blocks_spine) X(blocks_apply) X(blocks_count) X(blocks_lay_out) X(blocks_group)     \
+    X(blocks_reduce) X(blocks_spine) X(blocks_apply) X(blocks_count) X(blocks_lay_out)                     \
     X(scatter_count) X(scatter_count_rows) X(scatter_place) X(scatter_place_rows) X(lists_sort)            \
     X(lists_rank) X(lists_merge)                                                                           \
     X(import_blocks) X(import_cells) X(export_counts) X(export_offsets) X(lists_move) X(lists_move_long)   \

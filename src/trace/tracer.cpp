@@ -95,7 +95,7 @@ struct Query {
                     const Kernel kernel = options.step == GridStep::Dda ? kernels.grid_dda : kernels.grid_branch_free;
                     launch_wide_range(queue, kernel, n, rays_an_item(queue.device(), kernel), most, values...,
                                       grid.header(), scene, batch.rays, batch.skip, particular..., tables.blocks,
-                                      tables.groups, tables.cells, tables.references, geometry.triangles,
+                                      tables.cells, tables.references, geometry.triangles,
                                       geometry.instance_starts, geometry.instances);
                 } else {
                     const auto& brute_force = static_cast<const BruteForce&>(structure);

@@ -47,7 +47,7 @@ TEST_P(Plan, IsExact) {
                 EXPECT_EQ(grid.size_bytes(), table_bytes);
                 const setka::CompactTables& kept = grid.compact_tables();
                 EXPECT_EQ(opened.memory_in_use_bytes() - before,
-                          kept.blocks.size_bytes() + kept.groups.size_bytes() + kept.cells.size_bytes() +
+                          kept.blocks.size_bytes() + kept.cells.size_bytes() +
                               kept.references.size_bytes() + grid.geometry().triangles.size_bytes())
                     << "what is left beyond the scene is the grid alone";
                 std::uint64_t sum = 0;

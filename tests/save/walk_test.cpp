@@ -28,34 +28,31 @@ using namespace save_test;
 class WalkedTables {
   public:
     explicit WalkedTables(const Model& model) : model_(model) {
-        const sk_dims cell_dims = sk_cell_dims(model.header), dims = sk_block_dims(cell_dims),
-                      group_dims = sk_block_dims(dims);
+        const sk_dims dims = sk_block_dims(sk_cell_dims(model.header));
         blocks_.resize(std::size_t(dims.x) * dims.y * dims.z);
-        groups_.resize(std::size_t(group_dims.x) * group_dims.y * group_dims.z * 2);
+        std::vector<sk_u32> marks(std::size_t(sk_words_in_row(dims)) * dims.y * dims.z);
         references_.resize(model.references.size());
         sk_u32 totals[SK_TOTALS] = {}, cells = 0, pairs = 0;
         for (sk_u32 b = 0; b < blocks_.size(); ++b) {
-            sk_import_block(b, model.header, model.counts.data(), blocks_.data(), totals);
-            const sk_u32 of_block = blocks_[b].spare;
+            sk_import_block(b, model.header, model.counts.data(), marks.data(), blocks_.data(), totals);
+            const sk_u32 of_block = blocks_[b].clearance;
             blocks_[b].first = cells;
-            blocks_[b].spare = pairs;
+            blocks_[b].clearance = pairs;
             cells += sk_bit_count(sk_mask_of(blocks_[b]));
             pairs += of_block;
         }
         cells_.resize(cells);
         std::vector<sk_u32> places(cells);
         for (sk_u32 b = 0; b < blocks_.size(); ++b)
-            sk_import_cells(b, model.header, model.offsets.data(), model.counts.data(), blocks_.data(),
-                            cells_.data(), places.data());
+            sk_import_cells(b, model.header, model.offsets.data(), model.counts.data(), marks.data(),
+                            blocks_.data(), cells_.data(), places.data());
         for (sk_u32 r = 0; r < cells; ++r)
             sk_move_list(r, static_cast<sk_u32>(references_.size()), 0, cells_.data(), places.data(),
                          model.references.data(), references_.data());
-        for (sk_u32 group = 0; group < groups_.size() / 2; ++group)
-            sk_group_blocks(group, model.header, blocks_.data(), groups_.data());
     }
 
     [[nodiscard]] sk_grid_tables get() const {
-        return sk_make_tables(blocks_.data(), groups_.data(), cells_.data(), references_.data(),
+        return sk_make_tables(blocks_.data(), cells_.data(), references_.data(),
                               model_.triangles.data(), model_.instance_starts.data(),
                               model_.instances.data());
     }
@@ -63,7 +60,6 @@ class WalkedTables {
   private:
     const Model& model_;
     std::vector<sk_block> blocks_;
-    std::vector<sk_u32> groups_;
     std::vector<sk_cell_list> cells_;
     std::vector<sk_u32> references_;
 };

@@ -14,7 +14,7 @@ typedef struct sk_block_sums {
     sk_u64 cells, pairs;
 } sk_block_sums;
 
-/** Blocks [first, first + elements) of n, whose `spare` are their pairs. */
+/** Blocks [first, first + elements) of n, whose `clearance` are their pairs. */
 SK_FUNCTION sk_block_sums sk_sum_blocks(SK_GLOBAL const sk_block* blocks, sk_u64 first, sk_u32 elements, sk_u32 n) {
     sk_block_sums r;
     r.cells = 0u;
@@ -23,7 +23,7 @@ SK_FUNCTION sk_block_sums sk_sum_blocks(SK_GLOBAL const sk_block* blocks, sk_u64
         if (first + k < n) {
             const sk_block block = blocks[first + k];
             r.cells += sk_bit_count(sk_mask_of(block));
-            r.pairs += block.spare;
+            r.pairs += block.clearance;
         }
     return r;
 }
@@ -53,7 +53,7 @@ SK_FUNCTION void sk_blocks_spine(SK_LOCAL sk_u64* scratch, SK_LOCAL sk_u64* pair
     }
 }
 
-/** first and spare of each block become the cells and the pairs before it. */
+/** first and clearance of each block become the cells and the pairs before it. */
 SK_FUNCTION void sk_blocks_apply(SK_LOCAL sk_u64* scratch, SK_LOCAL sk_u64* pair_scratch, sk_u32 n, sk_u32 elements,
                                  sk_u32 groups, SK_GLOBAL const sk_u64* sums, SK_GLOBAL sk_block* blocks) {
     const sk_u64 first = (sk_u64)sk_global_id() * elements;
@@ -64,9 +64,9 @@ SK_FUNCTION void sk_blocks_apply(SK_LOCAL sk_u64* scratch, SK_LOCAL sk_u64* pair
     for (sk_u32 k = 0u; k < elements; ++k)
         if (first + k < n) {
             sk_block block = blocks[first + k];
-            const sk_u32 of_block = block.spare;
+            const sk_u32 of_block = block.clearance;
             block.first = (sk_u32)cells;
-            block.spare = (sk_u32)pairs;
+            block.clearance = (sk_u32)pairs;
             blocks[first + k] = block;
             cells += sk_bit_count(sk_mask_of(block));
             pairs += of_block;

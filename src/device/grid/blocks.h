@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /**
  * Where is the list of a cell, and where is nothing? The tables that walks read. Cells come in blocks of 4 x 4 x 4, one
- * 16-byte record each: a bit a cell, and where the records of the block's non-empty cells begin. Only those have one. A third,
- * small table has a bit a block, in groups of 4 x 4 x 4 blocks. Blocks and groups are numbered like cells, bits inside as
- * sk_bit_in_block() says; cells and their lists follow each other in that order too, so that neighbours in space are
+ * 16-byte record each: a bit a cell, where the records of the block's non-empty cells begin, and how far around an empty block
+ * there is nothing. Only non-empty cells have a record. Blocks are numbered like cells, bits inside as sk_bit_in_block() says; cells and their lists follow each other in that order too, so that neighbours in space are
  * neighbours in memory.
  */
 #ifndef SETKA_DEVICE_GRID_BLOCKS_H
@@ -11,12 +10,14 @@
 
 #include "device/dialect.h"
 #include "device/grid/limits.h"
+#include "device/math.h"
 
 /** 16 bytes, read at once. */
 typedef struct SK_ALIGNED(16) sk_block {
     sk_u32 mask_low, mask_high; /* bit sk_bit_in_block() is set where a cell is not empty */
     sk_u32 first;               /* the record of the block's first non-empty cell */
-    sk_u32 spare;               /* 0; while a grid is built, the pairs of the block and then those before it */
+    sk_u32 clearance;           /* 4 k - 1 where the block and those less than k blocks away are empty, k up to 4; 0 where it is not.
+                                   While a grid is built, the pairs of the block and then those before it. */
 } sk_block;
 
 /** references[offset .. offset + count) are the triangles of a cell. */
@@ -36,7 +37,7 @@ SK_FUNCTION sk_dims sk_cell_dims(SetkaGridHeader grid) {
     return r;
 }
 
-/** Blocks along the axes, for so many cells; or groups of blocks, for so many blocks. */
+/** Blocks along the axes, for so many cells. */
 SK_FUNCTION sk_dims sk_block_dims(sk_dims cells) {
     sk_dims r;
     r.x = (cells.x + 3u) / 4u;
@@ -76,18 +77,50 @@ SK_FUNCTION sk_u32 sk_rank_of(sk_block block, sk_u32 bit) {
                      : sk_popcount(block.mask_low) + sk_popcount(block.mask_high & below);
 }
 
-/** The two words of group `group`'s bits from the blocks. */
-SK_FUNCTION void sk_group_blocks(sk_u32 group, SetkaGridHeader grid, SK_GLOBAL const sk_block* blocks,
-                                 SK_GLOBAL sk_u32* groups) {
-    const sk_dims dims = sk_block_dims(sk_cell_dims(grid)), group_dims = sk_block_dims(dims);
-    sk_u64 mask = 0u;
-    for (sk_u32 bit = 0u; bit < SK_BLOCK_CELLS; ++bit) {
-        const sk_dims at = sk_cell_of_bit(group_dims, group, bit);
-        if (sk_is_inside(dims, at) && sk_mask_of(blocks[sk_number_at(dims, at.x, at.y, at.z)]) != 0u)
-            mask |= (sk_u64)1 << bit;
+/**
+ * Marks: a bit for each block along x, set where the block is not empty. Word i of a row of blocks has the 32 from block 16 i - 8 on, so that
+ * one word has all blocks that are near one of its middle; most blocks have two bits.
+ */
+#define SK_MARKED_BLOCKS 16u
+SK_FUNCTION sk_u32 sk_words_in_row(sk_dims blocks) { return (blocks.x + SK_MARKED_BLOCKS - 1u) / SK_MARKED_BLOCKS; }
+
+/** Sets the marks of block b, which is not empty; they are 0 at first. */
+SK_FUNCTION void sk_mark_block(sk_dims blocks, sk_u32 b, SK_GLOBAL sk_u32* marks) {
+    const sk_u32 x = b % blocks.x, words = sk_words_in_row(blocks), i = x / SK_MARKED_BLOCKS, k = x % SK_MARKED_BLOCKS;
+    SK_GLOBAL sk_u32* word = marks + ((size_t)(b / blocks.x) * words + i);
+    (void)sk_atomic_or(word, 1u << (k + 8u));
+    if (k < 8u && i > 0u) (void)sk_atomic_or(word - 1, 1u << (k + 24u));
+    if (k >= 8u && i + 1u < words) (void)sk_atomic_or(word + 1, 1u << (k - 8u));
+}
+
+/** How many blocks around an empty one are looked at, in each direction. */
+#define SK_FAR 3
+
+/** The row that is at a distance; past the grid's end the last one stands in, which is nearer. */
+SK_FUNCTION sk_u32 sk_row_at(sk_u32 from, sk_i32 distance, sk_u32 rows) {
+    const sk_i32 at = (sk_i32)from + distance;
+    return at < 0 ? 0u : sk_min_u32((sk_u32)at, rows - 1u);
+}
+
+/** The clearance of block b, which is empty. */
+SK_FUNCTION sk_u32 sk_find_clearance(sk_dims blocks, sk_u32 b, SK_GLOBAL const sk_u32* marks) {
+    const sk_u32 words = sk_words_in_row(blocks), row = b / blocks.x;
+    const sk_u32 x = b % blocks.x, y = row % blocks.y, z = row / blocks.y;
+    SK_GLOBAL const sk_u32* column = marks + x / SK_MARKED_BLOCKS;
+    const sk_u32 bit = x % SK_MARKED_BLOCKS + 8u;
+    sk_u32 some = column[(size_t)row * words], around = 1u; /* of all rows that are so near; the next distance */
+    while (around <= SK_FAR) {
+        const sk_i32 far = (sk_i32)around;
+        for (sk_i32 dz = -far; dz <= far; ++dz) {
+            const sk_i32 step = dz == far || dz == -far ? 1 : 2 * far;
+            const sk_u32 first = sk_row_at(z, dz, blocks.z) * blocks.y;
+            for (sk_i32 dy = -far; dy <= far; dy += step)
+                some |= column[(size_t)(first + sk_row_at(y, dy, blocks.y)) * words];
+        }
+        if ((some >> (bit - around) & ((2u << 2u * around) - 1u)) != 0u) break;
+        around += 1u;
     }
-    groups[2u * group] = (sk_u32)mask;
-    groups[2u * group + 1u] = (sk_u32)(mask >> 32);
+    return 4u * around - 1u;
 }
 
 #endif

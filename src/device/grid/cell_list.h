@@ -12,7 +12,6 @@
 /** The tables of a grid and what its walks need of the scene. */
 typedef struct sk_grid_tables {
     SK_GLOBAL const sk_block* blocks;
-    SK_GLOBAL const sk_u32* groups; /* a bit a block, two words for each 4 x 4 x 4 of them */
     SK_GLOBAL const sk_cell_list* cells;
     SK_GLOBAL const sk_u32* references;
     SK_GLOBAL const float* triangles;
@@ -20,14 +19,13 @@ typedef struct sk_grid_tables {
     SK_GLOBAL const SetkaInstance* instances;
 } sk_grid_tables;
 
-SK_FUNCTION sk_grid_tables sk_make_tables(SK_GLOBAL const sk_block* blocks, SK_GLOBAL const sk_u32* groups,
+SK_FUNCTION sk_grid_tables sk_make_tables(SK_GLOBAL const sk_block* blocks,
                                           SK_GLOBAL const sk_cell_list* cells, SK_GLOBAL const sk_u32* references,
                                           SK_GLOBAL const float* triangles,
                                           SK_GLOBAL const sk_u32* instance_starts,
                                           SK_GLOBAL const SetkaInstance* instances) {
     sk_grid_tables r;
     r.blocks = blocks;
-    r.groups = groups;
     r.cells = cells;
     r.references = references;
     r.triangles = triangles;

@@ -11,9 +11,9 @@
 #include "device/grid/limits.h"
 #include "device/math.h"
 
-/** Block b from the counts of its cells; `spare` becomes the number of its pairs, or 2^32 - 1 if it is larger. */
+/** Block b from the counts of its cells; `clearance` becomes the number of its pairs, or 2^32 - 1 if it is larger. */
 SK_FUNCTION void sk_import_block(sk_u32 b, SetkaGridHeader grid, SK_GLOBAL const sk_u32* counts,
-                                 SK_GLOBAL sk_block* blocks, SK_GLOBAL sk_u32* totals) {
+                                 SK_GLOBAL sk_u32* marks, SK_GLOBAL sk_block* blocks, SK_GLOBAL sk_u32* totals) {
     const sk_dims cells = sk_cell_dims(grid), dims = sk_block_dims(cells);
     sk_u64 mask = 0u, pairs = 0u;
     sk_u32 longest = 0u;
@@ -30,20 +30,22 @@ SK_FUNCTION void sk_import_block(sk_u32 b, SetkaGridHeader grid, SK_GLOBAL const
     block.mask_low = (sk_u32)mask;
     block.mask_high = (sk_u32)(mask >> 32);
     block.first = 0u;
-    block.spare = pairs >> 32 != 0u ? 0xffffffffu : (sk_u32)pairs;
+    block.clearance = pairs >> 32 != 0u ? 0xffffffffu : (sk_u32)pairs;
     blocks[b] = block;
+    if (mask != 0u) sk_mark_block(dims, b, marks);
     if (longest > SK_LONG_LIST) sk_atomic_max(totals + SK_TOTAL_LONGEST, longest);
 }
 
-/** The records of block b's cells, after the scan; `spare` has served. */
+/** The records of block b's cells, after the scan; empty blocks learn their clearance. */
 SK_FUNCTION void sk_import_cells(sk_u32 b, SetkaGridHeader grid, SK_GLOBAL const sk_i32* offsets,
-                                 SK_GLOBAL const sk_u32* counts, SK_GLOBAL sk_block* blocks,
-                                 SK_GLOBAL sk_cell_list* cells, SK_GLOBAL sk_u32* places) {
+                                 SK_GLOBAL const sk_u32* counts, SK_GLOBAL const sk_u32* marks,
+                                 SK_GLOBAL sk_block* blocks, SK_GLOBAL sk_cell_list* cells,
+                                 SK_GLOBAL sk_u32* places) {
     const sk_dims cell_dims = sk_cell_dims(grid), dims = sk_block_dims(cell_dims);
     sk_block block = blocks[b];
     sk_u32 r = block.first;
     sk_cell_list list;
-    list.offset = block.spare;
+    list.offset = block.clearance;
     for (sk_u32 bit = 0u; bit < SK_BLOCK_CELLS; ++bit)
         if (sk_has_bit(block, bit)) {
             const sk_dims at = sk_cell_of_bit(dims, b, bit);
@@ -54,7 +56,7 @@ SK_FUNCTION void sk_import_cells(sk_u32 b, SetkaGridHeader grid, SK_GLOBAL const
             list.offset += list.count;
             r += 1u;
         }
-    block.spare = 0u;
+    block.clearance = sk_mask_of(block) != 0u ? 0u : sk_find_clearance(dims, b, marks);
     blocks[b] = block;
 }
 

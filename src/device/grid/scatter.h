@@ -241,9 +241,9 @@ typedef struct SK_ALIGNED(16) sk_four_counts {
 
 SK_FUNCTION sk_u32 sk_pieces_of(sk_u32 count, sk_u32 alone) { return count > alone ? sk_piece_count(count) : 0u; }
 
-/** Block b from the counters of its cells; `spare` becomes the number of its pairs. Lists longer than `alone` come in pieces. */
-SK_FUNCTION void sk_count_block(sk_u32 b, sk_u32 alone, SK_GLOBAL const sk_u32* counters, SK_GLOBAL sk_block* blocks,
-                                SK_GLOBAL sk_u32* totals) {
+/** Block b from the counters of its cells; `clearance` becomes the number of its pairs. Lists longer than `alone` come in pieces. */
+SK_FUNCTION void sk_count_block(sk_u32 b, sk_u32 alone, SetkaGridHeader grid, SK_GLOBAL const sk_u32* counters,
+                                SK_GLOBAL sk_u32* marks, SK_GLOBAL sk_block* blocks, SK_GLOBAL sk_u32* totals) {
     SK_GLOBAL const sk_four_counts* own = (SK_GLOBAL const sk_four_counts*)(counters + (size_t)b * SK_BLOCK_CELLS);
     sk_u64 pairs = 0u, mask = 0u;
     sk_u32 longest = 0u, pieces = 0u;
@@ -263,8 +263,9 @@ SK_FUNCTION void sk_count_block(sk_u32 b, sk_u32 alone, SK_GLOBAL const sk_u32* 
     block.mask_low = (sk_u32)mask;
     block.mask_high = (sk_u32)(mask >> 32);
     block.first = 0u;
-    block.spare = pairs >> 32 != 0u ? 0xffffffffu : (sk_u32)pairs;
+    block.clearance = pairs >> 32 != 0u ? 0xffffffffu : (sk_u32)pairs;
     blocks[b] = block;
+    if (mask != 0u) sk_mark_block(sk_block_dims(sk_cell_dims(grid)), b, marks);
     if (longest > sk_min_u32(alone, SK_LONG_LIST)) sk_atomic_max(totals + SK_TOTAL_LONGEST, longest);
     if (pieces != 0u) sk_atomic_add(totals + SK_TOTAL_PIECES, pieces);
 }
@@ -280,15 +281,16 @@ SK_FUNCTION void sk_cut_list(sk_cell_list list, SK_GLOBAL sk_piece* pieces, SK_G
     for (sk_u32 k = 0u; k < count; ++k) pieces[piece.first + k] = piece;
 }
 
-/** The records of block b's cells, after the scan; the counters become the first places of the lists. */
-SK_FUNCTION void sk_lay_out_block(sk_u32 b, sk_u32 alone, SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_block* blocks,
+/** The records of block b's cells, after the scan; the counters become the first places of the lists. Empty blocks learn their clearance. */
+SK_FUNCTION void sk_lay_out_block(sk_u32 b, sk_u32 alone, SetkaGridHeader grid, SK_GLOBAL sk_u32* counters,
+                                  SK_GLOBAL const sk_u32* marks, SK_GLOBAL sk_block* blocks,
                                   SK_GLOBAL sk_cell_list* cells, SK_GLOBAL sk_piece* pieces,
                                   SK_GLOBAL sk_u32* totals) {
     SK_GLOBAL sk_u32* own = counters + (size_t)b * SK_BLOCK_CELLS;
     sk_block block = blocks[b];
     sk_u32 r = block.first;
     sk_cell_list list;
-    list.offset = block.spare;
+    list.offset = block.clearance;
     for (sk_u64 rest = sk_mask_of(block); rest != 0u; rest &= rest - 1u) {
         const sk_u32 bit = sk_bit_count((rest & (~rest + 1u)) - 1u);
         list.count = own[bit];
@@ -298,7 +300,8 @@ SK_FUNCTION void sk_lay_out_block(sk_u32 b, sk_u32 alone, SK_GLOBAL sk_u32* coun
         list.offset += list.count;
         r += 1u;
     }
-    block.spare = 0u;
+    block.clearance =
+        sk_mask_of(block) != 0u ? 0u : sk_find_clearance(sk_block_dims(sk_cell_dims(grid)), b, marks);
     blocks[b] = block;
 }
 

@@ -58,11 +58,14 @@ SK_FUNCTION sk_axis sk_make_axis(SetkaGridHeader grid, float origin, float direc
 SK_FUNCTION sk_u32 sk_cell_index(sk_axis a) { return (sk_u32)(a.index ^ a.flip); }
 
 /**
- * The way in cells to the face through which the ray leaves an aligned cube of cells around its cell, from the origin on and so without
- * accumulated error. `cube` is the cube's width in cells less one: 0, 3 or 15.
+ * The index at the far face of a cube around the ray's cell: 0 is the cell itself, 4 k - 1 its block and those less than k blocks away, as
+ * sk_block.clearance has it.
  */
+SK_FUNCTION sk_i32 sk_low_of(sk_axis a, sk_i32 cube) { return (a.index & ~(cube & 3)) - (cube & ~3); }
+
+/** The way in cells to the face through which the ray leaves the cube, from the origin on and so without accumulated error. */
 SK_FUNCTION float sk_exit_of(sk_axis a, sk_i32 cube) {
-    const sk_i32 low = a.index & ~cube;
+    const sk_i32 low = sk_low_of(a, cube);
     return low <= a.last ? SK_NEVER : a.origin - (float)low;
 }
 
@@ -108,7 +111,7 @@ SK_FUNCTION sk_place sk_enter(SetkaGridHeader grid, sk_working_ray ray, sk_span 
  * index that it has, whatever rounding says.
  */
 SK_FUNCTION sk_i32 sk_land(sk_axis a, sk_i32 cube, float w) {
-    const sk_i32 low = a.index & ~cube, end = low > a.last ? low : a.last;
+    const sk_i32 low = sk_low_of(a, cube), end = low > a.last ? low : a.last;
     const float at = a.origin - w * a.speed;
     return !(at < (float)a.index) ? a.index : at > (float)end ? (sk_i32)sk_floor(at) : end;
 }
@@ -128,9 +131,9 @@ SK_FUNCTION sk_place sk_leave(sk_place at, sk_i32 cube, float last) {
         r.y.index -= through_y;
         r.z.index -= !through_x && !through_y;
     } else {
-        r.x.index = through_x ? (at.x.index & ~cube) - 1 : sk_land(at.x, cube, w);
-        r.y.index = through_y ? (at.y.index & ~cube) - 1 : sk_land(at.y, cube, w);
-        r.z.index = through_x || through_y ? sk_land(at.z, cube, w) : (at.z.index & ~cube) - 1;
+        r.x.index = through_x ? sk_low_of(at.x, cube) - 1 : sk_land(at.x, cube, w);
+        r.y.index = through_y ? sk_low_of(at.y, cube) - 1 : sk_land(at.y, cube, w);
+        r.z.index = through_x || through_y ? sk_land(at.z, cube, w) : sk_low_of(at.z, cube) - 1;
     }
     return r;
 }
@@ -155,8 +158,7 @@ SK_FUNCTION sk_search sk_move_on(SetkaGridHeader grid, sk_grid_tables tables, sk
         const sk_dims blocks = sk_block_dims(sk_cell_dims(grid));
         const sk_block block = tables.blocks[sk_block_of(blocks, x, y, z)];
         if ((block.mask_low | block.mask_high) == 0u) {
-            const sk_u32 group = 2u * sk_block_of(sk_block_dims(blocks), x >> 2, y >> 2, z >> 2);
-            r.cube = (tables.groups[group] | tables.groups[group + 1u]) == 0u ? 15 : 3;
+            r.cube = (sk_i32)block.clearance;
         } else {
             const sk_u32 bit = sk_bit_in_block(x, y, z);
             r.cube = 0;

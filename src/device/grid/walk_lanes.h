@@ -19,7 +19,7 @@ typedef struct sk_axis_lanes {
 
 typedef struct sk_place_lanes {
     sk_axis_lanes x, y, z;
-    sk_iN cube; /* the width in cells less one of the cube to leave next: 0, 1, 3 or 15 */
+    sk_iN cube; /* to leave next: that of sk_low_of, or 1 for an aligned one of 2 x 2 x 2 cells */
 } sk_place_lanes;
 
 /** sk_cell, also of NaN. */
@@ -63,8 +63,9 @@ SK_FUNCTION sk_iN sk_land_lanes(sk_axis_lanes a, sk_iN low, sk_iN through, sk_fN
 
 /** sk_leave for the lanes in `moving`. The mask of those that have not come to their end. */
 SK_FUNCTION sk_iN sk_leave_lanes(sk_place_lanes* at, sk_iN moving, sk_fN last) {
-    const sk_iN low_x = at->x.index & ~at->cube, low_y = at->y.index & ~at->cube,
-                low_z = at->z.index & ~at->cube;
+    const sk_iN mask = ~(at->cube & 3), back = at->cube & ~3;
+    const sk_iN low_x = (at->x.index & mask) - back, low_y = (at->y.index & mask) - back,
+                low_z = (at->z.index & mask) - back;
     const sk_fN wx = sk_exit_lanes(at->x, low_x), wy = sk_exit_lanes(at->y, low_y),
                 wz = sk_exit_lanes(at->z, low_z);
     const sk_iN through_x = (wx <= wy) & (wx <= wz), through_y = ~through_x & (wy <= wz);
@@ -78,7 +79,7 @@ SK_FUNCTION sk_iN sk_leave_lanes(sk_place_lanes* at, sk_iN moving, sk_fN last) {
 
 /** A cell's block and its bit there. */
 typedef struct sk_found_lanes {
-    sk_iN mask_low, mask_high, first;
+    sk_iN mask_low, mask_high, first, clearance;
     sk_iN bit;
 } sk_found_lanes;
 
@@ -91,6 +92,7 @@ SK_FUNCTION sk_found_lanes sk_find_blocks(SetkaGridHeader grid, sk_grid_tables t
     r.mask_low = sk_lanes_as_int(block.a);
     r.mask_high = sk_lanes_as_int(block.b);
     r.first = sk_lanes_as_int(block.c);
+    r.clearance = sk_lanes_as_int(block.d);
     r.bit = (z & 3) * 16 + (y & 3) * 4 + (x & 3);
     return r;
 }
@@ -112,11 +114,7 @@ SK_FUNCTION sk_listed_lanes sk_look_lanes(SetkaGridHeader grid, sk_grid_tables t
     r.in = sk_find_blocks(grid, tables, x, y, z);
     const sk_iN word = sk_select_i(r.in.bit > sk_same_i(31), r.in.mask_high, r.in.mask_low);
     const sk_iN eight = word >> (r.in.bit & (2 + 8)) & SK_EIGHT_CELLS; /* those around the cell */
-    const sk_iN empty = (r.in.mask_low | r.in.mask_high) == zero;
-    const sk_dims dims = sk_block_dims(sk_block_dims(sk_cell_dims(grid)));
-    const sk_iN group = ((z >> 4) * (sk_i32)dims.y + (y >> 4)) * (sk_i32)dims.x + (x >> 4);
-    const sk_iN blocks = sk_gather_i(tables.groups, group, 2u) | sk_gather_i(tables.groups + 1, group, 2u);
-    at->cube = ((eight == zero) & 1) | (empty & 3) | ((blocks == zero) & 15);
+    at->cube = ((eight == zero) & 1) | r.in.clearance;
     r.some = (word >> (r.in.bit & 31) & 1) != zero;
     return r;
 }
