@@ -14,6 +14,7 @@
 #include "io/assimp_material.hpp"
 #include "io/assimp_objects.hpp"
 #include "io/file.hpp"
+#include "io/motion.hpp"
 #include "io/movable_gltf.hpp"
 #include "io/obj_frame.hpp"
 #include "io/readers.hpp"
@@ -293,13 +294,17 @@ Scene read_checked_gltf(const std::filesystem::path& file, CheckedGltf& checked,
 }  // namespace
 
 Scene read_gltf(const std::filesystem::path& file, std::string bytes) {
-    CheckedGltf checked = check_gltf(file, bytes);
+    CheckedGltf checked = check_gltf(file, bytes, GltfFilePart::Still);
+    if (checked.has_weights) {
+        checked = {};
+        return read_posed_gltf(file, std::move(bytes));
+    }
     bytes = {};
     return read_checked_gltf(file, checked, [](const SceneBuilder&, const aiScene&) {});
 }
 
-MovableGltf read_movable_gltf(const std::filesystem::path& file, std::string bytes) {
-    CheckedGltf checked = check_gltf(file, bytes, GltfFilePart::Moving);
+MovableGltf read_movable_gltf(const std::filesystem::path& file, std::string bytes, GltfFilePart wanted) {
+    CheckedGltf checked = check_gltf(file, bytes, wanted);
     bytes = {};
     MovableGltf result;
     result.document = checked.document;

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 /// Can assimp be trusted with this glTF file? assimp 5.2 follows node cycles without end, drops triangles
 /// with an index out of range without a word, and assumes JSON types. So the JSON is copied through a schema
-/// of what setka reads (unknown extensions stay behind; animations and morph targets never reach assimp), and
-/// every reference and range in the copy is checked.
+/// of what setka reads (unknown extensions stay behind; animations, morph targets and what the scene does not
+/// use never reach assimp), and every reference and range in the copy is checked.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "io/file.hpp"
 #include "io/gltf_container.hpp"
 #include "io/gltf_schema.hpp"
+#include "io/gltf_use.hpp"
 #include "io/readers.hpp"
 
 namespace setka::io::detail {
@@ -44,33 +45,28 @@ class GltfChecker {
         drop_dangling_textures(json_);
         separate_skinned_meshes();
         CheckedGltf checked;
-        for (std::size_t i = 0; i < size("meshes"); ++i) check_mesh(json_["meshes"][i], i, checked);
+        std::vector<std::uint64_t> triangles;  // of each mesh
+        for (std::size_t i = 0; i < size("meshes"); ++i)
+            triangles.push_back(check_mesh(json_["meshes"][i], i));
         for (std::size_t i = 0; i < size("cameras"); ++i) {
             const Json& camera = json_["cameras"][i];
             // Absent or orthographic: 0, which is no angle.
             checked.vertical_fovs.push_back(camera.value("perspective", Json::object()).value("yfov", 0.0));
         }
         check_nodes();
+        use_ = find_used(json_);
         for (std::size_t i = 0; i < size("skins"); ++i) check_skin(json_["skins"][i], i);
-        if (part == GltfFilePart::Moving) {
+        for (std::size_t i = 0; i < triangles.size(); ++i)
+            if (use_.meshes[i]) checked.triangle_count += triangles[i];
+        checked.has_weights = use_.has_weights;
+        if (part != GltfFilePart::Still)
             checked.document = std::make_shared<const GltfDocument>(file_, json_, container_.binary);
-            leave_still_part();
-        }
+        leave_still_part(json_, use_);
         checked.bytes = close_container(json_.dump(), container_);
         return checked;
     }
 
   private:
-    /// Takes away what assimp is not trusted with: it drops steps and tangents without a word.
-    void leave_still_part() {
-        json_.erase("animations");
-        for (std::size_t i = 0; i < size("nodes"); ++i) json_["nodes"][i].erase("weights");
-        for (std::size_t i = 0; i < size("meshes"); ++i) {
-            json_["meshes"][i].erase("weights");
-            for (Json& primitive : json_["meshes"][i]["primitives"]) primitive.erase("targets");
-        }
-    }
-
     [[nodiscard]] std::size_t size(const char* key) const {
         return json_.contains(key) ? json_[key].size() : 0;
     }
@@ -185,16 +181,18 @@ class GltfChecker {
     }
 
     /// Primitives without triangles (points, lines, nothing) are dropped: assimp refuses files with some of
-    /// them.
-    void check_mesh(Json& mesh, std::size_t index, CheckedGltf& checked) const {
+    /// them. Returns the number of triangles.
+    [[nodiscard]] std::uint64_t check_mesh(Json& mesh, std::size_t index) const {
         Json kept = Json::array();
+        std::uint64_t sum = 0;
         for (const Json& primitive : mesh.value("primitives", Json::array())) {
             const std::uint64_t triangles = check_primitive(primitive, index);
             if (triangles == 0) continue;
-            checked.triangle_count += triangles;
+            sum += triangles;
             kept.push_back(primitive);
         }
         mesh["primitives"] = kept;
+        return sum;
     }
 
     /// Checks what a primitive refers to; the triangles that it holds.
@@ -293,8 +291,8 @@ class GltfChecker {
         for (const Json& joint : joints) {
             const auto node = joint.get<std::size_t>();
             (void)element(node, "nodes");
-            // assimp goes from joints to their children too, so a cycle would have a way in.
-            if (!in_scene_[node])
+            // A skin that the scene does not use may be bound to nodes that are nowhere.
+            if (use_.skins[index] && !in_scene_[node])
                 fail_read(file_, "malformed glTF: joint " + joint.dump() + " of " + what + " is in no scene");
             json_["nodes"][node]["name"] = "node " + joint.dump();
         }
@@ -374,24 +372,11 @@ class GltfChecker {
         }
     }
 
-    /// A texture is only a colour here, so a reference to nothing is no error.
-    void drop_dangling_textures(Json& value) {
-        if (value.is_object() || value.is_array())
-            for (Json& inner : value) drop_dangling_textures(inner);
-        if (!value.is_object()) return;
-        for (const char* key : {"baseColorTexture", "diffuseTexture"}) {
-            if (!value.contains(key)) continue;
-            const std::uint64_t index = value[key].value("index", std::uint64_t(0xffffffff));
-            const bool known = index < size("textures") && json_["textures"][index].contains("source") &&
-                               json_["textures"][index]["source"].get<std::uint64_t>() < size("images");
-            if (!known) value.erase(key);
-        }
-    }
-
     const std::filesystem::path& file_;
     Json json_;
     const GltfContainer& container_;
     std::vector<bool> in_scene_;  ///< of each node: some scene reaches it
+    GltfUse use_;
 };
 
 }  // namespace

@@ -132,16 +132,33 @@ class GltfMotion final : public Motion {
     double vertical_fov_ = 0;
 };
 
-}  // namespace
-
-std::unique_ptr<Motion> open_gltf(const std::filesystem::path& file, const std::string& animation) {
+/// What goes wrong in `open` names the file.
+template <typename Open>
+std::unique_ptr<Motion> naming_file(const std::filesystem::path& file, const Open& open) {
     try {
-        return std::make_unique<GltfMotion>(file, read_movable_gltf(file, read_file(file)), animation);
+        return open();
     } catch (const nlohmann::json::exception& error) {
         fail_read(file, std::string("malformed glTF: ") + error.what());
     } catch (const std::bad_alloc&) {
         fail_read(file, "there is not enough memory for it");
     }
+}
+
+}  // namespace
+
+std::unique_ptr<Motion> open_gltf(const std::filesystem::path& file, const std::string& animation) {
+    return naming_file(file, [&] {
+        return std::make_unique<GltfMotion>(
+            file, read_movable_gltf(file, read_file(file), GltfFilePart::Moving), animation);
+    });
+}
+
+Scene read_posed_gltf(const std::filesystem::path& file, std::string bytes) {
+    const auto motion = naming_file(file, [&] {
+        return std::make_unique<GltfMotion>(
+            file, read_movable_gltf(file, std::move(bytes), GltfFilePart::Posed), std::string());
+    });
+    return std::move(motion->scene);
 }
 
 }  // namespace setka::io::detail

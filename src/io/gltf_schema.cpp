@@ -37,9 +37,9 @@ using Keys = std::span<const Key>;
 struct Key {
     const char* name;
     Type type;
-    Keys keys = {};         ///< of Object and Objects
-    std::size_t count = 0;  ///< of Numbers
-    GltfFilePart part = GltfFilePart::Still;
+    Keys keys = {};                           ///< of Object and Objects
+    std::size_t count = 0;                    ///< of Numbers
+    GltfFilePart part = GltfFilePart::Still;  ///< the least that it belongs to
 };
 
 constexpr Key texture[] = {{"index", Type::Index}, {"texCoord", Type::Index}};
@@ -82,10 +82,9 @@ constexpr Key primitive[] = {{"attributes", Type::IndexMap},
                              {"indices", Type::Index},
                              {"material", Type::Index},
                              {"mode", Type::Index},
-                             {"targets", Type::IndexMaps, {}, 0, GltfFilePart::Moving}};
-constexpr Key mesh[] = {{"name", Type::Text},
-                        {"primitives", Type::Objects, primitive},
-                        {"weights", Type::NumberList, {}, 0, GltfFilePart::Moving}};
+                             {"targets", Type::IndexMaps, {}, 0, GltfFilePart::Posed}};
+constexpr Key mesh[] = {
+    {"name", Type::Text}, {"primitives", Type::Objects, primitive}, {"weights", Type::NumberList}};
 constexpr Key perspective[] = {
     {"aspectRatio", Type::Number}, {"yfov", Type::Number}, {"zfar", Type::Number}, {"znear", Type::Number}};
 constexpr Key orthographic[] = {
@@ -111,7 +110,7 @@ constexpr Key node[] = {{"name", Type::Text},
                         {"translation", Type::Numbers, {}, 3},
                         {"rotation", Type::Numbers, {}, 4},
                         {"scale", Type::Numbers, {}, 3},
-                        {"weights", Type::NumberList, {}, 0, GltfFilePart::Moving},
+                        {"weights", Type::NumberList},
                         {"extensions", Type::Object, node_extensions}};
 constexpr Key skin[] = {{"inverseBindMatrices", Type::Index}, {"joints", Type::Indices}};
 constexpr Key animation_target[] = {{"node", Type::Index}, {"path", Type::Text}};
@@ -151,7 +150,7 @@ class Copier {
         if (!from.is_object()) wrong(name, "an object");
         Json copy = Json::object();
         for (const Key& key : keys) {
-            if (key.part == GltfFilePart::Moving && part_ == GltfFilePart::Still) continue;
+            if (key.part > part_) continue;
             if (const auto found = from.find(key.name); found != from.end())
                 copy[key.name] = value(*found, key);
         }

@@ -10,8 +10,9 @@ namespace setka::io::detail {
 
 /// How much of a file is wanted.
 enum class GltfFilePart {
-    Still,   ///< what stands: animations and morph targets stay behind
-    Moving,  ///< those too
+    Still,   ///< what stands without morph targets and animations
+    Posed,   ///< morph targets too
+    Moving,  ///< all
 };
 
 /// Parses glTF 2 JSON and copies what setka reads of this part. Throws InvalidData for text that is no JSON, another

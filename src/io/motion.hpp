@@ -30,6 +30,8 @@ struct Motion {
 /// A glTF file with the animation of this name or number.
 [[nodiscard]] std::unique_ptr<Motion> open_gltf(const std::filesystem::path& file,
                                                 const std::string& animation);
+/// A glTF file without its animations: where they would start if they moved nothing.
+[[nodiscard]] Scene read_posed_gltf(const std::filesystem::path& file, std::string bytes);
 
 /// Files of one frame each, sorted by their numbers, which have to follow one another.
 struct NumberedFiles {

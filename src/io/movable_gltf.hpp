@@ -13,13 +13,15 @@
 
 namespace setka::io::detail {
 
-/// A scene at rest, as load_scene reads it.
+/// A scene at rest, without morph targets.
 struct MovableGltf {
     Scene scene;
     std::shared_ptr<const GltfDocument> document;
     std::vector<GltfPart> instances;    ///< what each instance is in the file
     std::vector<double> vertical_fovs;  ///< of each camera in radians; 0 for one without perspective
 };
-[[nodiscard]] MovableGltf read_movable_gltf(const std::filesystem::path& file, std::string bytes);
+/// `wanted` is Posed or Moving.
+[[nodiscard]] MovableGltf read_movable_gltf(const std::filesystem::path& file, std::string bytes,
+                                            GltfFilePart wanted);
 
 }  // namespace setka::io::detail

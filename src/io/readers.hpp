@@ -26,7 +26,7 @@ namespace setka::io::detail {
 
 /// OBJ through assimp, in UTF-8 or UTF-16.
 [[nodiscard]] Scene read_obj(const std::filesystem::path& file, std::string bytes);
-/// glTF and GLB through assimp, after check_gltf.
+/// glTF and GLB through assimp, after check_gltf; morph targets at the weights of the file.
 [[nodiscard]] Scene read_gltf(const std::filesystem::path& file, std::string bytes);
 
 /// The statements of an OBJ text that setka reads, indices checked and made absolute.
@@ -39,12 +39,13 @@ namespace setka::io::detail {
 /// A glTF file that was checked: bytes that assimp can be trusted with, and what it must make of them.
 struct CheckedGltf {
     std::string bytes;                              ///< the file again, reduced to what stands
-    std::uint64_t triangle_count = 0;               ///< of all meshes, each once
+    std::uint64_t triangle_count = 0;               ///< of all meshes that its scene uses, each once
+    bool has_weights = false;                       ///< morph targets count where it stands still, too
     std::vector<double> vertical_fovs;              ///< of each camera in radians; 0 for one without perspective
-    std::shared_ptr<const GltfDocument> document;  ///< of GltfFilePart::Moving: the rest, too
+    std::shared_ptr<const GltfDocument> document;  ///< of GltfFilePart::Posed and Moving: the rest, too
 };
 /// Throws InvalidData for wrong types, references, ranges and unsupported extensions.
 [[nodiscard]] CheckedGltf check_gltf(const std::filesystem::path& file, const std::string& bytes,
-                                     GltfFilePart part = GltfFilePart::Still);
+                                     GltfFilePart part);
 
 }  // namespace setka::io::detail

@@ -18,57 +18,6 @@ namespace {
 using Json = nlohmann::json;
 using testing::ElementsAre;
 
-testing::Matcher<Float3> near(float x, float y, float z) {
-    using testing::Field, testing::FloatNear;
-    return testing::AllOf(Field("x", &Float3::x, FloatNear(x, 1e-5f)),
-                          Field("y", &Float3::y, FloatNear(y, 1e-5f)),
-                          Field("z", &Float3::z, FloatNear(z, 1e-5f)));
-}
-
-/// A triangle (0, 0, 0), (1, 0, 0), (0, 1, 0) at node 1, a child of node 0, and another one at node 2.
-class File {
-  public:
-    File() {
-        json = Json::parse(R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 2]}],
-            "nodes": [{"children": [1], "name": "truck"}, {"mesh": 0, "name": "wheel"}, {"mesh": 0}],
-            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
-            "accessors": [], "bufferViews": []})");
-        (void)add<float>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0}, 3);
-        (void)add<std::uint16_t>("SCALAR", {0, 1, 2});
-    }
-
-    template <typename T>
-    std::size_t add(const char* type, const std::vector<T>& values, std::size_t width = 1) {
-        return add_accessor<T>(json, bytes, type, values.size() / width, values);
-    }
-
-    /// Adds a channel to an animation.
-    void move(int node, const char* path, const char* interpolation, const std::vector<float>& times,
-              const char* type, std::size_t width, const std::vector<float>& values,
-              std::size_t animation = 0) {
-        Json& list = json["animations"];
-        while (list.size() <= animation)
-            list.push_back({{"channels", Json::array()}, {"samplers", Json::array()}});
-        Json& into = list[animation];
-        into["channels"].push_back(
-            {{"sampler", into["samplers"].size()}, {"target", {{"node", node}, {"path", path}}}});
-        const std::size_t input = add<float>("SCALAR", times), output = add<float>(type, values, width);
-        into["samplers"].push_back({{"input", input}, {"output", output}, {"interpolation", interpolation}});
-    }
-
-    [[nodiscard]] std::filesystem::path write() const {
-        (void)folder.write("scene.bin", bytes);
-        Json whole = json;
-        whole["buffers"] = Json::array({{{"uri", "scene.bin"}, {"byteLength", bytes.size()}}});
-        return folder.write("scene.gltf", whole.dump());
-    }
-    [[nodiscard]] Animation open(const std::string& name = {}) const { return Animation(write(), name); }
-
-    Folder folder;
-    Json json;
-    std::string bytes;
-};
-
 const float half = std::sqrt(0.5f);
 
 TEST(Animation, MovesNodesAndWhatIsBelowThem) {
@@ -159,24 +108,6 @@ TEST(Animation, HasTheSameBitsEverywhere) {
                             0x1.d51f62p-1f, 0, -0x1.4ea2e2p-5f, 0x1.3c251p+0f, 0x1.736a4ep+0f, 0));
 }
 
-/// Two triangles 0 1 2 and 0 2 3 that hang on the joints of nodes 3 and 4.
-void add_skin(File& file) {
-    const std::size_t positions = file.add<float>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, 3);
-    const std::size_t joints =
-        file.add<std::uint8_t>("VEC4", {0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0}, 4);
-    const std::size_t weights = file.add<float>("VEC4", {1, 0, 0, 0, 1, 0, 0, 0, 2, 2, 0, 0, 0, 0, 0, 0}, 4);
-    const std::size_t indices = file.add<std::uint16_t>("SCALAR", {0, 1, 2, 0, 2, 3});
-    file.json["meshes"].push_back(
-        {{"primitives",
-          {{{"attributes", {{"POSITION", positions}, {"JOINTS_0", joints}, {"WEIGHTS_0", weights}}},
-            {"indices", indices}}}}});
-    file.json["nodes"].push_back({{"translation", {0, 0, 5}}});
-    file.json["nodes"].push_back(Json::object());
-    file.json["nodes"].push_back({{"mesh", 1}, {"skin", 0}, {"translation", {0, 100, 0}}});
-    file.json["skins"].push_back({{"joints", {3, 4}}});
-    file.json["scenes"][0]["nodes"] = {0, 2, 3, 4, 5};
-}
-
 TEST(Animation, MovesSkins) {
     File file;
     add_skin(file);
@@ -222,43 +153,6 @@ TEST(Animation, MovesEveryVertexOfALargeSkin) {
     ASSERT_EQ(update.vertices.at(0).positions.size(), count);
     for (std::size_t i = 0; i < count; ++i)
         ASSERT_EQ(update.vertices[0].positions[i], (Float3{float(i), float(i % 3), float(i % 2) + 16}));
-}
-
-TEST(Animation, MovesMorphTargets) {
-    File file;
-    const std::size_t up = file.add<float>("VEC3", {0, 0, 4, 0, 0, 0, 0, 0, 0}, 3);
-    const std::size_t aside = file.add<float>("VEC3", {0, 0, 0, 2, 0, 0, 0, 0, 0}, 3);
-    const std::size_t normals = file.add<float>("VEC3", {0, 0, 1, 0, 0, 1, 0, 0, 1}, 3);
-    const std::size_t tilt = file.add<float>("VEC3", {1, 0, 0, 0, 0, 0, 0, 0, 0}, 3);
-    Json& primitive = file.json["meshes"][0]["primitives"][0];
-    primitive["attributes"]["NORMAL"] = normals;
-    primitive["targets"] = {{{"POSITION", up}, {"NORMAL", tilt}}, {{"POSITION", aside}}};
-    file.json["meshes"][0]["weights"] = {0, 0.5};
-    file.move(1, "weights", "LINEAR", {0, 1}, "SCALAR", 1, {0, 0, 1, 1});
-    const Animation animation = file.open();
-    const Scene& scene = animation.scene();
-    ASSERT_EQ(scene.meshes.size(), 2u) << "each node has weights of its own";
-    const std::uint32_t moving = scene.instances[0].mesh, still = scene.instances[1].mesh;
-    EXPECT_THAT(scene.meshes[moving].positions, ElementsAre(near(0, 0, 0), near(1, 0, 0), near(0, 1, 0)));
-    EXPECT_THAT(scene.meshes[still].positions, ElementsAre(near(0, 0, 0), near(2, 0, 0), near(0, 1, 0)))
-        << "the weights of the mesh, where no animation changes them";
-    const SceneUpdate update = animation.at(0.5);
-    ASSERT_EQ(update.vertices.size(), 1u);
-    EXPECT_EQ(update.vertices[0].mesh, moving);
-    EXPECT_THAT(update.vertices[0].positions, ElementsAre(near(0, 0, 2), near(2, 0, 0), near(0, 1, 0)));
-    const float length = std::sqrt(1.25f);
-    EXPECT_THAT(update.vertices[0].normals,
-                ElementsAre(near(0.5f / length, 0, 1 / length), near(0, 0, 1), near(0, 0, 1)));
-}
-
-/// Without normals in the file they follow the faces.
-TEST(Animation, RemakesNormalsOfMorphedFaces) {
-    File file;
-    const std::size_t up = file.add<float>("VEC3", {0, 0, 0, 0, 0, 1, 0, 0, 0}, 3);
-    file.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", up}}};
-    file.move(1, "weights", "LINEAR", {0, 1}, "SCALAR", 1, {0, 1});
-    const SceneUpdate update = file.open().at(1);
-    EXPECT_THAT(update.vertices.at(0).normals, testing::Each(near(-half, 0, half)));
 }
 
 TEST(Animation, MovesTheCamera) {
@@ -404,42 +298,6 @@ TEST(Animation, HasABudgetForAllThatIsDecoded) {
     expect_error([&] { (void)file.open(); }, ErrorCategory::InvalidData,
                  {"scene.gltf", "accessor " + std::to_string(file.json["accessors"].size() - 3),
                   " takes 134217728 bytes beside 436207616", "together they may take 536870912"});
-}
-
-/// Each target keeps a vector for each vertex, also if all have one accessor.
-TEST(Animation, HasABudgetForTargets) {
-    File file;
-    const std::size_t count = 50000;
-    std::vector<float> points;
-    std::vector<std::uint16_t> corners;
-    for (std::size_t i = 0; i + 3 <= count; i += 3)
-        for (std::size_t k = 0; k < 3; ++k) {
-            points.insert(points.end(), {float(i), float(k == 1), float(k == 2)});
-            corners.push_back(static_cast<std::uint16_t>(i + k));
-        }
-    Json& primitive = file.json["meshes"][0]["primitives"][0];
-    primitive["attributes"]["POSITION"] = file.add<float>("VEC3", points, 3);
-    primitive["indices"] = file.add<std::uint16_t>("SCALAR", corners);
-    file.json["nodes"].erase(2);
-    file.json["scenes"][0]["nodes"] = {0};
-    const Json target = {{"POSITION", primitive["attributes"]["POSITION"]}};
-    primitive["targets"] = Json(std::vector<Json>(800, target));
-    EXPECT_EQ(file.open().kind(), MotionKind::None);
-    primitive["targets"] = Json(std::vector<Json>(1000, target));
-    expect_error([&] { (void)file.open(); }, ErrorCategory::InvalidData,
-                 {"scene.gltf", "primitive 0 of mesh 0, for accessor 2, takes 599976 bytes",
-                  "together they may take 536870912"});
-}
-
-TEST(Animation, HasALimitOfTargetsForFurtherNodes) {
-    File file;
-    const std::size_t up = file.add<float>("VEC3", {0, 0, 0, 0, 0, 1, 0, 0, 0}, 3);
-    const Json target = {{"POSITION", up}};
-    file.json["meshes"][0]["primitives"][0]["targets"] = Json(std::vector<Json>(1 << 10, target));
-    while (file.json["nodes"].size() < (1 << 10) + 3) file.json["nodes"].push_back({{"mesh", 0}});
-    expect_error([&] { (void)file.open(); }, ErrorCategory::InvalidData,
-                 {"scene.gltf", "share meshes with more than 2^20 morph targets"});
-    EXPECT_EQ(load_scene(file.write()).triangle_count(), 2u) << "which has no targets";
 }
 
 /// What is refused when a picture of it is wanted must not depend on its motion.

@@ -3,6 +3,7 @@
 /// themselves?
 #include <nlohmann/json.hpp>
 
+#include "setka/animation.hpp"
 #include "tests/io/support.hpp"
 
 namespace setka::io::test {
@@ -140,6 +141,60 @@ TEST(Gltf, DropsPrimitivesWithoutTriangles) {
     expect_unreadable(write(folder, json), "no triangle");
 }
 
+/// A second triangle without indices, (0, 0, 0), (1, 0, 0), (0, 1, 0) backwards in x, as mesh 1.
+Json two_triangles(const Folder& folder) {
+    Json json = triangle(folder);
+    std::string bytes = read_bytes(folder / "scene.bin") + "..";
+    for (const float value : {0, 0, 0, -1, 0, 0, 0, 1, 0}) bytes += bytes_of(value);
+    (void)folder.write("scene.bin", bytes);
+    json["buffers"][0]["byteLength"] = bytes.size();
+    json["bufferViews"].push_back({{"buffer", 0}, {"byteOffset", 44}, {"byteLength", 36}});
+    json["accessors"].push_back({{"bufferView", 2}, {"componentType", 5126}, {"count", 3}, {"type", "VEC3"}});
+    json["meshes"].push_back({{"primitives", {{{"attributes", {{"POSITION", 2}}}}}}});
+    return json;
+}
+
+/// The x of the second corner of all instances, where there is nothing else; as an animation, too.
+std::vector<float> second_corners(const std::filesystem::path& file) {
+    const auto corners = [](const Scene& scene) {
+        EXPECT_EQ(scene.meshes.size(), scene.instances.size());
+        std::vector<float> list;
+        for (const Instance& instance : scene.instances)
+            list.push_back(scene.meshes[instance.mesh].positions.at(1).x + instance.transform.rows[3]);
+        return list;
+    };
+    const std::vector<float> list = corners(load_scene(file));
+    EXPECT_EQ(list, corners(Animation(file).scene()));
+    return list;
+}
+
+TEST(Gltf, LeavesOutMeshesThatNoNodeUses) {
+    const Folder folder;
+    Json json = two_triangles(folder);
+    EXPECT_THAT(second_corners(write(folder, json)), testing::ElementsAre(1));
+    json["nodes"][0]["mesh"] = 1;
+    EXPECT_THAT(second_corners(write(folder, json)), testing::ElementsAre(-1)) << "the first is unused";
+    json["nodes"].push_back({{"mesh", 0}, {"translation", {10, 0, 0}}});
+    EXPECT_THAT(second_corners(write(folder, json)), testing::ElementsAre(-1)) << "nor by a node in no scene";
+    json["nodes"][0]["children"] = {1};
+    EXPECT_THAT(second_corners(write(folder, json)), testing::ElementsAre(-1, 11));
+    json["scenes"][0]["nodes"] = Json::array();
+    expect_unreadable(write(folder, json), "no triangle");
+}
+
+TEST(Gltf, LeavesOutMeshesOfOtherScenes) {
+    const Folder folder;
+    Json json = two_triangles(folder);
+    json["nodes"] =
+        Json::parse(R"([{"mesh": 0}, {"mesh": 1, "children": [2]}, {"mesh": 0, "translation": [5, 0, 0]}])");
+    json["scenes"] = Json::parse(R"([{"nodes": [0]}, {"nodes": [1]}])");
+    EXPECT_THAT(second_corners(write(folder, json)), testing::ElementsAre(1));
+    json["scene"] = 1;
+    EXPECT_THAT(second_corners(write(folder, json)), testing::ElementsAre(-1, 6));
+    json.erase("scene");
+    EXPECT_THAT(second_corners(write(folder, json)), testing::ElementsAre(1)) << "the first, if it says none";
+}
+
 TEST(Gltf, RefusesAnIndexOutOfRangeInABuffer) {
     const Folder folder;
     const Json json = triangle(folder);
@@ -147,6 +202,25 @@ TEST(Gltf, RefusesAnIndexOutOfRangeInABuffer) {
     bytes[40] = 9;
     (void)folder.write("scene.bin", bytes);
     expect_unreadable(write(folder, json), "an index is out of range");
+}
+
+/// As many triangles are lost as a mesh has that is left out, or one that is not.
+TEST(Gltf, RefusesAnIndexOutOfRangeBesideMeshesThatAreLeftOut) {
+    const Folder folder;
+    Json json = two_triangles(folder);
+    std::string bytes = read_bytes(folder / "scene.bin");
+    json["bufferViews"][1] = {{"buffer", 0}, {"byteOffset", bytes.size()}, {"byteLength", 12}};
+    json["buffers"][0]["byteLength"] = bytes.size() + 12;
+    json["accessors"][1]["count"] = 6;
+    for (const std::uint16_t index : {0, 1, 2, 0, 1, 9}) bytes += bytes_of(index);
+    (void)folder.write("scene.bin", bytes);
+    expect_unreadable(write(folder, json), "only 1 of 2 triangles can be used: an index is out of range");
+    json["nodes"].push_back({{"mesh", 1}});
+    json["scenes"][0]["nodes"].push_back(1);
+    expect_unreadable(write(folder, json), "only 2 of 3 triangles can be used: an index is out of range");
+    bytes[bytes.size() - 2] = 2;
+    (void)folder.write("scene.bin", bytes);
+    EXPECT_EQ(load_scene(write(folder, json)).triangle_count(), 3u);
 }
 
 }  // namespace

@@ -42,13 +42,6 @@ Scene load(const Folder& folder, const Json& json) {
     return load_scene(folder.write("scene.gltf", json.dump()));
 }
 
-testing::Matcher<Float3> near(float x, float y, float z) {
-    using testing::Field, testing::FloatNear;
-    return testing::AllOf(Field("x", &Float3::x, FloatNear(x, 1e-5f)),
-                          Field("y", &Float3::y, FloatNear(y, 1e-5f)),
-                          Field("z", &Float3::z, FloatNear(z, 1e-5f)));
-}
-
 TEST(Skin, MovesVerticesAndNormalsByTheirJoints) {
     const Folder folder;
     const Scene scene = load(folder, arm(folder));
@@ -116,6 +109,31 @@ TEST(Skin, IsRefusedWhereItContradictsItself) {
     json["nodes"].push_back({{"children", {4}}});
     json["skins"][0]["joints"] = {2, 4};
     expect_unreadable(folder.write("scene.gltf", json.dump()), "joint 4 of skin 0 is in no scene");
+}
+
+/// Two triangles that nothing moves stand in the scene; the arm is in another one, or in none, or its joints
+/// are in a cycle besides.
+TEST(Skin, OfAnotherSceneIsLeftOut) {
+    const Folder folder;
+    Json json = arm(folder);
+    json["nodes"].push_back({{"mesh", 0}, {"translation", {0, 7, 0}}});
+    const auto check = [&](const Json& scenes) {
+        json["scenes"] = scenes;
+        json["scene"] = scenes.size() - 1;
+        const std::filesystem::path file = folder.write("scene.gltf", json.dump());
+        for (const Scene& scene : {load_scene(file), Animation(file).scene()}) {
+            ASSERT_EQ(scene.instances.size(), 1u);
+            ASSERT_EQ(scene.meshes.size(), 1u);
+            EXPECT_THAT(scene.meshes[0].positions.at(1), near(1, 0, 0));
+            EXPECT_EQ(scene.instances[0].transform.rows[7], 7);
+        }
+    };
+    check({{{"nodes", {0}}}, {{"nodes", {4}}}});
+    check({{{"nodes", {4}}}});
+    json["nodes"][3]["children"] = {5};
+    json["nodes"].push_back({{"children", {3}}});
+    json["nodes"][2].erase("children");
+    check({{{"nodes", {4}}}});
 }
 
 }  // namespace
