@@ -14,9 +14,9 @@ namespace setka::io {
 
 /// Reads OBJ+MTL, PLY, STL, OFF, glTF and GLB: node transforms, skins at their rest pose, morph targets at the weights of their
 /// nodes or meshes, materials, cameras and lights; polygons become triangles, points and lines are dropped. Of a glTF file with
-/// several scenes the one it names is read, or the first; what that does not use is left out. Throws InvalidData, in one line with the file's name, for a file
-/// that is missing, empty, truncated or malformed, of an unknown format, without any triangle, with a non-finite vertex or an
-/// index out of range.
+/// several scenes the one it names is read, or the first; what that does not use is left out. Throws InvalidData, in one line
+/// with the file's name, for a file that is missing, empty, truncated or malformed, of an unknown format, without any triangle,
+/// with a non-finite vertex or an index out of range.
 [[nodiscard]] Scene load_scene(const std::filesystem::path& file);
 /// All files in one scene, in order.
 [[nodiscard]] Scene load_scene(std::span<const std::filesystem::path> files);

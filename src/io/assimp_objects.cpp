@@ -2,7 +2,6 @@
 /// Which transforms, camera and lights does an imported scene have? Those that are usable, in world space.
 #include "io/assimp_objects.hpp"
 
-#include <assimp/camera.h>
 #include <assimp/light.h>
 #include <assimp/scene.h>
 
@@ -58,7 +57,6 @@ double total_brightness(const Scene& scene) {
 
 }  // namespace
 
-/// aiCamera repeats the node's translation in its own position, so that is left alone.
 std::optional<Camera> place_camera(const aiMatrix4x4& world, double vertical_fov) {
     const aiMatrix3x3 linear(world);
     const aiVector3D eye = world * aiVector3D(0, 0, 0);
@@ -92,10 +90,12 @@ Matrix34 take_transform(const std::filesystem::path& file, const aiMatrix4x4& ma
     return transform;
 }
 
-std::optional<Camera> take_camera(const aiScene& source, std::span<const double> vertical_fovs) {
-    for (unsigned i = 0; i < source.mNumCameras && i < vertical_fovs.size(); ++i)
-        if (const auto placed = place_camera(world_transform(source, source.mCameras[i]->mName), vertical_fovs[i]))
+std::optional<Camera> take_camera(const aiScene& source, std::span<const GltfCamera> cameras) {
+    for (const GltfCamera& camera : cameras) {
+        const aiString node("node " + std::to_string(camera.node));
+        if (const auto placed = place_camera(world_transform(source, node), camera.vertical_fov))
             return placed;
+    }
     return std::nullopt;
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 
+#include "io/gltf_use.hpp"
 #include "setka/scene.hpp"
 
 struct aiNode;
@@ -23,8 +24,9 @@ namespace setka::io::detail {
 [[nodiscard]] std::optional<Camera> place_camera(const aiMatrix4x4& world, double vertical_fov);
 
 /// The first perspective camera of a glTF scene, placed by its node; nothing if none can be used.
-/// `vertical_fovs` holds the angle of each camera in radians: assimp 5.2 keeps it only as angle times aspect.
-[[nodiscard]] std::optional<Camera> take_camera(const aiScene& source, std::span<const double> vertical_fovs);
+/// The cameras of assimp 5.2 are left alone: it keeps an angle only as angle times aspect, sorts them as it
+/// comes upon them, and repeats a node's translation in the camera's position.
+[[nodiscard]] std::optional<Camera> take_camera(const aiScene& source, std::span<const GltfCamera> cameras);
 /// Adds point lights (spots among them) and directional lights, placed by their nodes. Physical units have no
 /// meaning in Whitted shading, so lights that are too bright for it at the middle of the scene are dimmed
 /// together.

@@ -285,7 +285,7 @@ Scene read_checked_gltf(const std::filesystem::path& file, CheckedGltf& checked,
                             " triangles can be used: an index is out of range");
     SceneBuilder builder(file, scene, Source::Gltf);
     Scene result = builder.build();
-    result.camera = take_camera(scene, checked.vertical_fovs);
+    result.camera = take_camera(scene, checked.cameras);
     take_lights(scene, result);
     take(builder, scene);
     return result;
@@ -308,7 +308,7 @@ MovableGltf read_movable_gltf(const std::filesystem::path& file, std::string byt
     bytes = {};
     MovableGltf result;
     result.document = checked.document;
-    result.vertical_fovs = checked.vertical_fovs;
+    result.cameras = checked.cameras;
     result.scene = read_checked_gltf(file, checked, [&](const SceneBuilder& builder, const aiScene& source) {
         const auto numbers = node_numbers(*checked.document, source);
         for (const SceneBuilder::Origin& origin : builder.origins()) {

@@ -48,17 +48,13 @@ class GltfChecker {
         std::vector<std::uint64_t> triangles;  // of each mesh
         for (std::size_t i = 0; i < size("meshes"); ++i)
             triangles.push_back(check_mesh(json_["meshes"][i], i));
-        for (std::size_t i = 0; i < size("cameras"); ++i) {
-            const Json& camera = json_["cameras"][i];
-            // Absent or orthographic: 0, which is no angle.
-            checked.vertical_fovs.push_back(camera.value("perspective", Json::object()).value("yfov", 0.0));
-        }
         check_nodes();
         use_ = find_used(json_);
         for (std::size_t i = 0; i < size("skins"); ++i) check_skin(json_["skins"][i], i);
         for (std::size_t i = 0; i < triangles.size(); ++i)
             if (use_.meshes[i]) checked.triangle_count += triangles[i];
         checked.has_weights = use_.has_weights;
+        checked.cameras = use_.cameras;
         if (part != GltfFilePart::Still)
             checked.document = std::make_shared<const GltfDocument>(file_, json_, container_.binary);
         leave_still_part(json_, use_);

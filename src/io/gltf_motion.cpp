@@ -49,7 +49,7 @@ class GltfMotion final : public Motion {
         scene = std::move(gltf.scene);
         files = {file};
         duration_seconds = nodes_.animation().duration_seconds;
-        take_camera(gltf.vertical_fovs);
+        take_camera(gltf.cameras);
         std::vector<GltfDeformer> still;
         for (std::uint32_t i = 0; i < parts_.size(); ++i) {
             GltfDeformer deformer(*document_, parts_[i], scene.meshes[parts_[i].mesh]);
@@ -100,16 +100,14 @@ class GltfMotion final : public Motion {
     }
 
     /// The first camera that can be used, as load_scene takes it.
-    void take_camera(const std::vector<double>& vertical_fovs) {
+    void take_camera(const std::vector<GltfCamera>& cameras) {
         const std::vector<Rows> worlds = nodes_.world(0);
-        for (std::size_t i = 0; i < vertical_fovs.size(); ++i)
-            for (std::size_t node = 0; node < nodes_.size() && !camera_node_; ++node) {
-                const nlohmann::json& json = document_->element("nodes", node);
-                if (!nodes_.is_in_scene(node) || !json.contains("camera") || json["camera"] != i) continue;
-                camera_node_ = node;
-                vertical_fov_ = vertical_fovs[i];
-                if (!camera_at(worlds)) camera_node_.reset();
-            }
+        for (const GltfCamera& camera : cameras) {
+            camera_node_ = camera.node;
+            vertical_fov_ = camera.vertical_fov;
+            if (camera_at(worlds)) return;
+        }
+        camera_node_.reset();
     }
 
     [[nodiscard]] bool camera_moves() const { return camera_node_ && nodes_.is_moved(*camera_node_); }

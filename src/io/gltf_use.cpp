@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 
 namespace setka::io::detail {
 
@@ -16,6 +17,21 @@ const Json& list(const Json& object, const char* key) {
     static const Json none = Json::array();
     const auto found = object.find(key);
     return found == object.end() ? none : *found;
+}
+
+std::vector<GltfCamera> find_cameras(const Json& json, const std::vector<bool>& used) {
+    std::vector<std::pair<std::size_t, std::size_t>> numbers;  // of the camera, then of the node
+    for (std::size_t node = 0; node < used.size(); ++node)
+        if (used[node] && json["nodes"][node].contains("camera"))
+            numbers.emplace_back(json["nodes"][node]["camera"].get<std::size_t>(), node);
+    std::ranges::sort(numbers);
+    std::vector<GltfCamera> cameras;
+    for (const auto& [camera, node] : numbers) {
+        // Absent or orthographic: 0, which is no angle.
+        const Json perspective = json["cameras"][camera].value("perspective", Json::object());
+        cameras.push_back({node, perspective.value("yfov", 0.0)});
+    }
+    return cameras;
 }
 
 bool has_weight(const Json& object) {
@@ -60,6 +76,7 @@ GltfUse find_used(const Json& json) {
         if (node.contains("skin")) use.skins[node["skin"].get<std::size_t>()] = true;
         for (const Json& child : list(node, "children")) open.push_back(child.get<std::size_t>());
     }
+    use.cameras = find_cameras(json, use.nodes);
     return use;
 }
 

@@ -2,16 +2,24 @@
 /// What of a glTF file does the scene use that is read, and what of that does assimp get?
 #pragma once
 
+#include <cstddef>
 #include <nlohmann/json.hpp>
 #include <vector>
 
 namespace setka::io::detail {
 
+/// A camera where a node places it.
+struct GltfCamera {
+    std::size_t node = 0;
+    double vertical_fov = 0;  ///< radians; 0 for one without perspective
+};
+
 /// What nodes of the file's scene reach. Files may hold more: other scenes, nodes in none, meshes for no
 /// node.
 struct GltfUse {
     std::vector<bool> nodes, meshes, skins;
-    bool has_weights = false;  ///< some morph target stands at another weight than 0
+    std::vector<GltfCamera> cameras;  ///< in the order of the file's cameras, then of its nodes
+    bool has_weights = false;         ///< some morph target stands at another weight than 0
 };
 /// Nodes must be trees, and references must have been checked.
 [[nodiscard]] GltfUse find_used(const nlohmann::json& json);

@@ -9,6 +9,7 @@
 
 #include "io/gltf_deformer.hpp"
 #include "io/gltf_document.hpp"
+#include "io/gltf_use.hpp"
 #include "setka/scene.hpp"
 
 namespace setka::io::detail {
@@ -17,8 +18,8 @@ namespace setka::io::detail {
 struct MovableGltf {
     Scene scene;
     std::shared_ptr<const GltfDocument> document;
-    std::vector<GltfPart> instances;    ///< what each instance is in the file
-    std::vector<double> vertical_fovs;  ///< of each camera in radians; 0 for one without perspective
+    std::vector<GltfPart> instances;  ///< what each instance is in the file
+    std::vector<GltfCamera> cameras;
 };
 /// `wanted` is Posed or Moving.
 [[nodiscard]] MovableGltf read_movable_gltf(const std::filesystem::path& file, std::string bytes,

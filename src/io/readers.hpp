@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "io/gltf_document.hpp"
+#include "io/gltf_use.hpp"
 #include "io/raw_mesh.hpp"
 #include "setka/scene.hpp"
 
@@ -41,7 +42,7 @@ struct CheckedGltf {
     std::string bytes;                              ///< the file again, reduced to what stands
     std::uint64_t triangle_count = 0;               ///< of all meshes that its scene uses, each once
     bool has_weights = false;                       ///< morph targets count where it stands still, too
-    std::vector<double> vertical_fovs;              ///< of each camera in radians; 0 for one without perspective
+    std::vector<GltfCamera> cameras;                ///< that its scene uses; their nodes are named "node 7" and so on
     std::shared_ptr<const GltfDocument> document;  ///< of GltfFilePart::Posed and Moving: the rest, too
 };
 /// Throws InvalidData for wrong types, references, ranges and unsupported extensions.

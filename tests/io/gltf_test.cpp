@@ -84,6 +84,33 @@ TEST(Gltf, ReadsCameraLightsAndMaterials) {
     EXPECT_EQ(scene.materials[2].transparency, 1);
 }
 
+/// The first camera of the file that the scene uses, in whatever order nodes use them.
+TEST(Gltf, TakesTheFirstCameraOfItsScene) {
+    const Folder folder;
+    Json json = triangle(folder);
+    json["cameras"] = Json::parse(R"([{"type": "orthographic", "orthographic": {"xmag": 1, "ymag": 1}},
+        {"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.1}},
+        {"type": "perspective", "perspective": {"yfov": 1, "znear": 0.1}}])");
+    json["nodes"] = Json::parse(R"([{"mesh": 0}, {"camera": 2, "translation": [0, 0, 1]},
+        {"camera": 1, "translation": [0, 0, 2]}, {"camera": 1, "translation": [0, 0, 3]},
+        {"camera": 0, "translation": [0, 0, 4]}])");
+    const auto expect = [&](const Json& nodes, float z, double radians) {
+        json["scenes"][0]["nodes"] = nodes;
+        const std::filesystem::path file = write(folder, json);
+        for (const Scene& scene : {load_scene(file), Animation(file).scene()}) {
+            ASSERT_TRUE(scene.camera);
+            EXPECT_EQ(scene.camera->eye.z, z) << nodes;
+            EXPECT_NEAR(scene.camera->vertical_fov_degrees, radians * 180 / 3.14159265, 1e-4) << nodes;
+        }
+    };
+    expect({0, 1, 2, 3, 4}, 2, 0.5);
+    expect({4, 3, 2, 1, 0}, 2, 0.5);
+    expect({0, 1}, 1, 1);
+    expect({0, 1, 3}, 3, 0.5);
+    json["scenes"][0]["nodes"] = {0, 4};
+    EXPECT_FALSE(load_scene(write(folder, json)).camera) << "which has no angle";
+}
+
 TEST(Gltf, RefusesWhatContradictsItself) {
     const Folder folder;
     const auto refuses = [&](const char* pointer, const Json& value, const std::string& reason) {
