@@ -13,7 +13,8 @@
 namespace setka::io {
 
 /// Reads OBJ+MTL, PLY, STL, OFF, glTF and GLB: node transforms, skins at their rest pose, morph targets at the weights of their
-/// nodes or meshes, materials, cameras and lights; polygons become triangles, points and lines are dropped. Of a glTF file with
+/// nodes or meshes, materials, vertex colours, cameras and lights; polygons become triangles, points and lines are dropped.
+/// Vertex colours are linear in glTF, in OBJ and as floats in PLY, and sRGB as integers in PLY. Of a glTF file with
 /// several scenes the one it names is read, or the first; what that does not use is left out. Throws InvalidData, in one line
 /// with the file's name, for a file that is missing, empty, truncated or malformed, of an unknown format, without any triangle,
 /// with a non-finite vertex or an index out of range.

@@ -131,7 +131,7 @@ ImportedMaterial convert_gltf(const aiMaterial& source, const aiScene& scene,
     std::optional<Float3> mean = texture_colour(source, aiTextureType_BASE_COLOR, &scene, folder);
     if (!mean) mean = texture_colour(source, aiTextureType_DIFFUSE, &scene, folder);
     if (mean) base.rgb = times(base.rgb, *mean);
-    imported.has_colour = mean || base.rgb != Float3{1, 1, 1};
+    imported.has_colour = true;  // white, if it says nothing
 
     float metallic = clamped(number(source, AI_MATKEY_METALLIC_FACTOR).value_or(1), 0, 1, 1);
     float roughness = clamped(number(source, AI_MATKEY_ROUGHNESS_FACTOR).value_or(1), 0, 1, 1);

@@ -14,7 +14,7 @@ namespace setka::io::detail {
 
 struct ImportedMaterial {
     Material material;
-    bool has_colour = false;  ///< the file gives it a diffuse colour or a texture other than plain white
+    bool has_colour = false;  ///< the file says which, if only by default
 };
 
 /// An OBJ material (MTL): colours as they are, Ns, d, Tf, Ni and illum.

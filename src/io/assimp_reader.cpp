@@ -67,15 +67,13 @@ RawMesh take_mesh(const aiMesh& source, Source kind) {
         for (unsigned i = 0; i < face.mNumIndices; ++i) raw.corners.push_back(face.mIndices[i]);
         raw.end_face();
     }
-    if (source.HasVertexColors(0) && source.mNumVertices) {
-        double sum[3] = {};
-        for (unsigned i = 0; i < source.mNumVertices; ++i)
-            for (unsigned c = 0; c < 3; ++c) sum[c] += source.mColors[0][i][c];
-        const auto mean = [&](double value) {
-            value /= source.mNumVertices;
-            return static_cast<float>(value > 0 ? std::min(value, 1.0) : 0.0);
-        };
-        raw.colour = Float3{mean(sum[0]), mean(sum[1]), mean(sum[2])};
+    if (source.HasVertexColors(0)) {
+        const auto share = [](float value) { return value > 0 ? std::min(value, 1.0f) : 0.0f; };
+        raw.colors.reserve(source.mNumVertices);
+        for (unsigned i = 0; i < source.mNumVertices; ++i) {
+            const aiColor4D& c = source.mColors[0][i];
+            raw.colors.push_back({share(c.r), share(c.g), share(c.b)});
+        }
     }
     return raw;
 }
@@ -128,11 +126,12 @@ class SceneBuilder {
         PlacedMesh placed;
         placed.in_world = source.HasBones();
         if (placed.in_world) raw = skinner.pose(std::move(raw), source);
-        const std::optional<Float3> colour = raw.colour;
+        const bool is_coloured = !raw.colors.empty();
         TracedMesh traced = finish_traced_mesh(file_, std::move(raw));
         if (!traced.mesh.triangles.empty()) {
             placed.mesh = static_cast<std::uint32_t>(scene_.meshes.size());
-            placed.material = material_of(source.mMaterialIndex, colour);
+            placed.material =
+                material_of(source.mMaterialIndex, is_coloured ? Colours::OfVertices : Colours::OfMaterial);
             placed.sources = std::make_shared<const std::vector<std::uint32_t>>(std::move(traced.sources));
             placed.normals_from = traced.normals_from;
             scene_.meshes.push_back(std::move(traced.mesh));
@@ -140,17 +139,19 @@ class SceneBuilder {
         placed_.push_back(std::move(placed));
     }
 
-    /// The number of the material in the scene, where each is listed once it is used; a copy in the mean
-    /// vertex colour where the material has no colour of its own.
-    std::uint32_t material_of(unsigned index, const std::optional<Float3>& colour) {
+    enum class Colours { OfMaterial, OfVertices };
+
+    /// The number of the material in the scene, where each is listed once it is used; a white copy under
+    /// vertex colours where the material has no colour of its own.
+    std::uint32_t material_of(unsigned index, Colours colours) {
         const bool known = index < imported_.size();
-        const bool tinted = colour && !(known && imported_[index].has_colour);
-        if (known && !tinted && numbers_.contains(index)) return numbers_[index];
+        const bool is_white = colours == Colours::OfVertices && !(known && imported_[index].has_colour);
+        if (known && !is_white && numbers_.contains(index)) return numbers_[index];
         Material material = known ? imported_[index].material : Material{};
-        if (tinted) material.diffuse = *colour;
+        if (is_white) material.diffuse = {1, 1, 1};
         const auto number = static_cast<std::uint32_t>(scene_.materials.size());
         scene_.materials.push_back(std::move(material));
-        if (known && !tinted) numbers_[index] = number;
+        if (known && !is_white) numbers_[index] = number;
         return number;
     }
 

@@ -9,10 +9,9 @@ PlacedMeshes place_meshes(const std::filesystem::path& file, std::vector<RawMesh
     Scene& scene = placed.scene;
     for (std::size_t i = 0; i < meshes.size(); ++i) {
         Material material;
-        if (meshes[i].colour) material.diffuse = *meshes[i].colour;
+        if (!meshes[i].colors.empty()) material.diffuse = {1, 1, 1};  // which the colours multiply
         TracedMesh traced = finish_traced_mesh(file, std::move(meshes[i]));
         if (traced.mesh.triangles.empty()) continue;
-        // Meshes without colours share the material.
         const bool reuse = !scene.materials.empty() && scene.materials.back().diffuse == material.diffuse;
         if (!reuse) scene.materials.push_back(material);
         Instance instance;

@@ -117,24 +117,14 @@ class PlyNumbers {
     const PlyElement* element_ = nullptr;
 };
 
-/// Sums colours: integers are sRGB of their type's range, floats are linear.
-class ColourMean {
-  public:
-    void add(int channel, double value, PlyType type) {
-        if (type == PlyType::Uint8 || type == PlyType::Uint16) {
-            const double full = type == PlyType::Uint8 ? 255 : 65535;
-            value = exact::srgb_to_linear(std::floor(value / full * 255 + 0.5) / 255);
-        }
-        if (value >= 0 && value <= 1) sums_[static_cast<std::size_t>(channel)] += value;
-    }
-    [[nodiscard]] Float3 mean(std::uint64_t count) const {
-        const auto divide = [&](double sum) { return static_cast<float>(sum / static_cast<double>(count)); };
-        return {divide(sums_[0]), divide(sums_[1]), divide(sums_[2])};
-    }
-
-  private:
-    std::array<double, 3> sums_{};
-};
+/// A channel of a colour, from 0 to 1: floats are linear, integers sRGB, of 8 bits if they are not of 16.
+float linear_channel(double value, PlyType type) {
+    const bool is_linear = type == PlyType::Float32 || type == PlyType::Float64;
+    if (!is_linear) value /= type == PlyType::Uint16 ? 65535 : 255;
+    value = value > 0 ? std::min(value, 1.0) : 0;
+    if (!is_linear) value = exact::srgb_to_linear(std::floor(value * 255 + 0.5) / 255);
+    return static_cast<float>(value);
+}
 
 void read_vertices(const std::filesystem::path& file, const PlyElement& element, PlyNumbers& numbers,
                    RawMesh& mesh) {
@@ -160,8 +150,8 @@ void read_vertices(const std::filesystem::path& file, const PlyElement& element,
 
     mesh.positions.resize(element.count);
     if (has_normals) mesh.normals.resize(element.count);
-    ColourMean colours;
-    std::array<float, 6> values{};
+    if (has_colours) mesh.colors.resize(element.count);
+    std::array<float, 9> values{};
     for (std::uint64_t v = 0; v < element.count; ++v) {
         for (std::size_t i = 0; i < role.size(); ++i) {
             const PlyProperty& property = element.properties[i];
@@ -169,14 +159,14 @@ void read_vertices(const std::filesystem::path& file, const PlyElement& element,
                 numbers.skip(property);
             } else {
                 const double value = numbers.real(property.type);
-                if (role[i] < 6) values[static_cast<std::size_t>(role[i])] = static_cast<float>(value);
-                else colours.add(role[i] - 6, value, property.type);
+                values[static_cast<std::size_t>(role[i])] =
+                    role[i] < 6 ? static_cast<float>(value) : linear_channel(value, property.type);
             }
         }
         mesh.positions[v] = {values[0], values[1], values[2]};
         if (has_normals) mesh.normals[v] = {values[3], values[4], values[5]};
+        if (has_colours) mesh.colors[v] = {values[6], values[7], values[8]};
     }
-    if (has_colours && element.count) mesh.colour = colours.mean(element.count);
 }
 
 std::uint32_t vertex_index(const std::filesystem::path& file, std::int64_t index) {

@@ -2,6 +2,8 @@
 /// How do a file's polygons become a Mesh? Checks, triangles, welding, and normals that can be trusted.
 #include "io/raw_mesh.hpp"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -54,7 +56,7 @@ bool normals_usable(const Mesh& mesh) {
 }
 
 struct VertexBits {
-    std::uint32_t words[6];
+    std::uint32_t words[9];
     friend bool operator==(const VertexBits&, const VertexBits&) = default;
 };
 
@@ -69,7 +71,7 @@ struct VertexHash {
     }
 };
 
-/// For each vertex, the first one with the same bits of position and normal.
+/// For each vertex, the first one with the same bits of position, normal and colour.
 std::vector<std::uint32_t> first_equal(const Mesh& mesh) {
     std::vector<std::uint32_t> first(mesh.positions.size());
     std::unordered_map<VertexBits, std::uint32_t, VertexHash> seen;
@@ -77,9 +79,10 @@ std::vector<std::uint32_t> first_equal(const Mesh& mesh) {
     for (std::uint32_t i = 0; i < first.size(); ++i) {
         const Float3& p = mesh.positions[i];
         const Float3 n = mesh.normals.empty() ? Float3{} : mesh.normals[i];
-        const VertexBits key{{std::bit_cast<std::uint32_t>(p.x), std::bit_cast<std::uint32_t>(p.y),
-                              std::bit_cast<std::uint32_t>(p.z), std::bit_cast<std::uint32_t>(n.x),
-                              std::bit_cast<std::uint32_t>(n.y), std::bit_cast<std::uint32_t>(n.z)}};
+        const Float3 c = mesh.colors.empty() ? Float3{} : mesh.colors[i];
+        VertexBits key;
+        std::ranges::transform(std::array{p.x, p.y, p.z, n.x, n.y, n.z, c.x, c.y, c.z}, key.words,
+                               [](float value) { return std::bit_cast<std::uint32_t>(value); });
         first[i] = seen.try_emplace(key, i).first->second;
     }
     return first;
@@ -96,11 +99,13 @@ std::vector<std::uint32_t> compact(Mesh& mesh) {
         if (number[i] == unset) continue;
         mesh.positions[count] = mesh.positions[i];
         if (!mesh.normals.empty()) mesh.normals[count] = mesh.normals[i];
+        if (!mesh.colors.empty()) mesh.colors[count] = mesh.colors[i];
         kept.push_back(i);
         number[i] = count++;
     }
     mesh.positions.resize(count);
     if (!mesh.normals.empty()) mesh.normals.resize(count);
+    if (!mesh.colors.empty()) mesh.colors.resize(count);
     for (Triangle& t : mesh.triangles) t = {number[t.a], number[t.b], number[t.c]};
     return kept;
 }
@@ -122,6 +127,7 @@ TracedMesh finish_traced_mesh(const std::filesystem::path& file, RawMesh raw) {
     mesh.name = std::move(raw.name);
     mesh.positions = std::move(raw.positions);
     mesh.normals = std::move(raw.normals);
+    mesh.colors = std::move(raw.colors);
     std::uint32_t begin = 0;
     for (const std::uint32_t end : raw.face_ends) {
         triangulate(mesh.positions, std::span(raw.corners).subspan(begin, end - begin), mesh.triangles);
@@ -138,7 +144,10 @@ TracedMesh finish_traced_mesh(const std::filesystem::path& file, RawMesh raw) {
     traced.sources = compact(mesh);
     if (keep_normals) return traced;
     traced.normals_from = NormalsFrom::Faces;
-    for (const std::uint32_t repeated : make_normals(mesh)) traced.sources.push_back(traced.sources[repeated]);
+    for (const std::uint32_t repeated : make_normals(mesh)) {
+        traced.sources.push_back(traced.sources[repeated]);
+        if (!mesh.colors.empty()) mesh.colors.push_back(Float3(mesh.colors[repeated]));
+    }
     return traced;
 }
 

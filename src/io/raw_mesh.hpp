@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,9 +24,9 @@ struct RawMesh {
     std::string name;
     std::vector<Float3> positions;
     std::vector<Float3> normals;           ///< one per position, or empty
+    std::vector<Float3> colors;            ///< one per position, linear from 0 to 1, or empty
     std::vector<std::uint32_t> corners;    ///< the vertices of all faces
     std::vector<std::uint32_t> face_ends;  ///< where in `corners` each face ends
-    std::optional<Float3> colour;          ///< mean of the vertex colours, linear
     Sharing sharing = Sharing::ByIndex;
 
     /// Ends the face whose corners were just added.

@@ -114,8 +114,10 @@ TEST(Ply, ReadsBothByteOrdersAlike) {
     EXPECT_EQ(corners(a), corners(b));
     EXPECT_EQ(corners(a)[1], (Float3{0.1f, -0.0f, 3}));
     // sRGB bytes become linear colours.
-    EXPECT_NEAR(a.materials[0].diffuse.x, 1, 1e-6);
-    EXPECT_NEAR(a.materials[0].diffuse.z, 0.21586, 1e-4);
+    EXPECT_EQ(a.materials[0].diffuse, (Float3{1, 1, 1}));
+    EXPECT_EQ(a.meshes[0].colors, std::vector(3, Float3{1, 0, a.meshes[0].colors.at(0).z}));
+    EXPECT_NEAR(a.meshes[0].colors[0].z, 0.215861, 1e-6);
+    EXPECT_EQ(a.meshes[0].colors[0], b.meshes[0].colors[2]) << "the same bytes, backwards";
 }
 
 TEST(Ply, RefusesWhatIsWrong) {
