@@ -66,7 +66,7 @@ class DeviceScene {
     void remove_instance(std::uint32_t number);
 
     /// Moves what the update says, and commits; its camera is the renderer's business. Throws InvalidArgument, and changes nothing, for
-    /// what setka::apply(Scene&, …) would refuse; and what commit() throws.
+    /// a placement or vertices that setka::apply(Scene&, …) would refuse; and what commit() throws.
     void apply(Queue& queue, const SceneUpdate& update);
 
     // What is shaded with. Throws InvalidData for what Scene::validate would refuse, InvalidArgument for the number of a material that is not

@@ -45,22 +45,18 @@ std::uint32_t block_count(const ::SetkaGridHeader& header) noexcept {
     return in_fours(header.dims[0]) * in_fours(header.dims[1]) * in_fours(header.dims[2]);
 }
 
-std::uint32_t mark_count(const ::SetkaGridHeader& header) noexcept {
-    return (in_fours(header.dims[0]) + 15) / 16 * in_fours(header.dims[1]) * in_fours(header.dims[2]);
+std::uint32_t mark_count(const std::uint32_t (&dims)[3]) noexcept {
+    return (in_fours(dims[0]) + 15) / 16 * in_fours(dims[1]) * in_fours(dims[2]);
 }
 
-std::uint64_t counter_count(const ::SetkaGridHeader& header) noexcept {
-    return std::uint64_t(block_count(header)) * SK_BLOCK_CELLS + mark_count(header);
+std::uint64_t counter_count(const std::uint32_t (&dims)[3]) noexcept {
+    return std::uint64_t(in_fours(dims[0])) * in_fours(dims[1]) * in_fours(dims[2]) * SK_BLOCK_CELLS + mark_count(dims);
 }
 
 Buffer<std::uint32_t> make_counters(Queue& queue, const ::SetkaGridHeader& header) {
-    auto counters = queue.make_buffer<std::uint32_t>(counter_count(header), "cell counters and marks");
+    auto counters = queue.make_buffer<std::uint32_t>(counter_count(header.dims), "cell counters and marks");
     queue.impl().fill(*counters.memory(), 0, counters.size_bytes());
     return counters;
-}
-
-std::uint64_t slot_count(const std::uint32_t (&dims)[3]) noexcept {
-    return std::uint64_t(in_fours(dims[0])) * in_fours(dims[1]) * in_fours(dims[2]) * SK_BLOCK_CELLS;
 }
 
 Buffer<std::uint32_t> make_totals(Queue& queue) {
@@ -111,7 +107,7 @@ CompactTables import_tables(Queue& queue, const ::SetkaGridHeader& header, const
     CompactTables tables;
     const std::uint32_t n = block_count(header);
     tables.blocks = queue.make_buffer<std::uint32_t>(n * block_words, "blocks");
-    const auto marks = queue.make_buffer<std::uint32_t>(mark_count(header), "marks of blocks");
+    const auto marks = queue.make_buffer<std::uint32_t>(mark_count(header.dims), "marks of blocks");
     queue.impl().fill(*marks.memory(), 0, marks.size_bytes());
     BlockTotals totals;
     {
@@ -138,7 +134,7 @@ CompactTables import_tables(Queue& queue, const ::SetkaGridHeader& header, const
 std::uint64_t import_bytes(const Device& device, const ::SetkaGridHeader& header, std::uint32_t cells) {
     constexpr std::uint64_t word = sizeof(std::uint32_t);
     const std::uint32_t n = block_count(header);
-    return (n * block_words + mark_count(header)) * word +
+    return (n * block_words + mark_count(header.dims)) * word +
            std::max(SK_TOTALS * word + block_sums_bytes(device, n),
                     (cells * (cell_words + std::uint64_t(1)) + header.reference_count) * word);
 }

@@ -11,14 +11,13 @@ namespace setka {
 
 /// Blocks of 4 x 4 x 4 cells.
 [[nodiscard]] std::uint32_t block_count(const ::SetkaGridHeader& header) noexcept;
-/// Words of the blocks' marks, which a build needs (device/grid/blocks.h).
-[[nodiscard]] std::uint32_t mark_count(const ::SetkaGridHeader& header) noexcept;
-/// A counter for each cell of all blocks, with the marks behind them, all 0.
+/// Words of a counter for each cell of all blocks, those outside the grid included, and of the blocks' marks behind them
+/// (device/grid/blocks.h).
+[[nodiscard]] std::uint64_t counter_count(const std::uint32_t (&dims)[3]) noexcept;
+/// Of the marks alone.
+[[nodiscard]] std::uint32_t mark_count(const std::uint32_t (&dims)[3]) noexcept;
+/// Counters and marks, all 0.
 [[nodiscard]] Buffer<std::uint32_t> make_counters(Queue& queue, const ::SetkaGridHeader& header);
-[[nodiscard]] std::uint64_t counter_count(const ::SetkaGridHeader& header) noexcept;
-
-/// Cells of all blocks, those outside the grid included.
-[[nodiscard]] std::uint64_t slot_count(const std::uint32_t (&dims)[3]) noexcept;
 
 /// Words of a block's and a cell's record.
 inline constexpr std::uint64_t block_words = 4, cell_words = 2;

@@ -26,7 +26,7 @@ GridLimits::GridLimits(const Device& device, const GridOptions& options)
     : device_(device), options_(options), held_before_bytes_(device.memory_in_use_bytes()) {}
 
 void GridLimits::check_cells(const GridResolution& resolution) const {
-    const std::uint64_t cells = resolution.cell_count(), slots = slot_count(resolution.dims);
+    const std::uint64_t cells = resolution.cell_count(), slots = counter_count(resolution.dims);
     const std::uint64_t budget = device_.options().memory_budget_bytes;
     const std::uint64_t most_slots = std::min(budget, device_.info().max_allocation_bytes) / word;
     if (cells <= most_entries && slots <= most_slots) return;

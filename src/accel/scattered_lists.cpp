@@ -125,7 +125,7 @@ std::optional<ScatteredCount> count_scattered(Queue& queue, const WorldGeometry&
 std::uint64_t scattered_count_bytes(const Device& device, const ::SetkaGridHeader& header,
                                     std::uint32_t row_capacity) {
     const std::uint32_t blocks = block_count(header);
-    return (SK_TOTALS + counter_count(header) + blocks * block_words + header.triangle_count * reach_words +
+    return (SK_TOTALS + counter_count(header.dims) + blocks * block_words + header.triangle_count * reach_words +
             row_capacity * row_words) *
                word +
            block_sums_bytes(device, blocks);

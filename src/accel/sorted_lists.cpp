@@ -33,7 +33,7 @@ std::uint64_t count_bytes(Queue& queue, std::uint64_t triangles, std::uint64_t r
 /// The bytes that finding out which cells are not empty holds.
 std::uint64_t mark_bytes(const Device& device, const ::SetkaGridHeader& header) {
     const std::uint32_t blocks = block_count(header);
-    return (SK_TOTALS + counter_count(header) + blocks * block_words) * word + block_sums_bytes(device, blocks);
+    return (SK_TOTALS + counter_count(header.dims) + blocks * block_words) * word + block_sums_bytes(device, blocks);
 }
 
 void count_rows(Queue& queue, const WorldGeometry& geometry, const ::SetkaGridHeader& header,

@@ -20,7 +20,7 @@ struct MeshPlace {
 
 class MeshTables {
   public:
-    /// Takes room for meshes, side by side where there is some for all, and uploads them; if that throws, the room is free again.
+    /// Takes room for meshes and uploads them; if that throws, the room is free again.
     [[nodiscard]] std::vector<MeshPlace> place(Queue& queue, std::span<const Mesh> meshes);
     /// Its room is free for others.
     void remove(const MeshPlace& place);

@@ -29,12 +29,13 @@ using Names = std::vector<std::pair<std::string, T>>;
     return names;
 }
 
-/// The word for a value that has one.
+/// Empty for a value that has no word.
 template <typename T>
-[[nodiscard]] const std::string& word_for(T value, const Names<T>& names) {
-    return std::ranges::find(names, value, &std::pair<std::string, T>::second)->first;
+[[nodiscard]] std::string word_for(T value, const Names<T>& names) {
+    const auto found = std::ranges::find(names, value, &std::pair<std::string, T>::second);
+    return found == names.end() ? std::string() : found->first;
 }
-[[nodiscard]] inline const std::string& name_of(View view) { return word_for(view, view_names()); }
-[[nodiscard]] inline const std::string& name_of(GridStep step) { return word_for(step, step_names()); }
+[[nodiscard]] inline std::string name_of(View view) { return word_for(view, view_names()); }
+[[nodiscard]] inline std::string name_of(GridStep step) { return word_for(step, step_names()); }
 
 }  // namespace setka

@@ -47,7 +47,7 @@ struct Pose {
 /// Nothing if the name has no moment, or if there is nothing of that name.
 [[nodiscard]] std::optional<Pose> find_pose(const std::filesystem::path& folder, const std::string& name) {
     const std::size_t plus = name.rfind('+');
-    if (plus == std::string::npos || !std::filesystem::exists(folder / name.substr(0, plus))) return {};
+    if (plus == std::string::npos || plus == 0 || !std::filesystem::exists(folder / name.substr(0, plus))) return {};
     double moment = 0;
     const char* const end = name.data() + name.size();
     const auto read = std::from_chars(name.data() + plus + 1, end, moment);

@@ -37,7 +37,12 @@ constexpr const char* usage =
 [[nodiscard]] std::vector<workload::GoldenCase> cases_of(std::span<char* const> names) {
     if (names.empty()) return golden::cases();
     std::vector<workload::GoldenCase> cases;
-    for (const char* name : names) cases.push_back({name});
+    for (const std::string name : names) {
+        const std::size_t before = cases.size();
+        for (const workload::GoldenCase& what : golden::cases())
+            if (what.scene == name) cases.push_back(what);
+        if (cases.size() == before) cases.push_back({name});
+    }
     return cases;
 }
 
@@ -72,7 +77,7 @@ void print_digests(const fs::path& scenes, const std::string& selector, std::spa
             if (what.scene.find('/') != std::string::npos)
                 names.push_back(what.scene);  // the others are built in
     for (const char* part : parts) {
-        if (workload::NamedScene{part}.exists(scenes) && !fs::is_directory(scenes / part)) {
+        if (std::strchr(part, '/') && workload::NamedScene{part}.exists(scenes) && !fs::is_directory(scenes / part)) {
             names.emplace_back(part);
             continue;
         }

@@ -85,7 +85,8 @@ void OpenClQueue::launch(Kernel kernel, std::uint32_t group_count, std::uint32_t
 }
 
 void OpenClQueue::write(Memory& target, std::uint64_t at, const void* source, std::uint64_t size_bytes) {
-    // A checker may forget at a transfer what it knew of the rest: Oclgrind 21.10 takes each for the whole buffer.
+    // A checker may forget at a transfer what it knew of the rest: Oclgrind 21.10 takes each for the whole buffer. It then believes of the rest
+    // of such a buffer that somebody wrote it.
     if (!settings().pooling && size_bytes < target.size_bytes()) {
         std::vector<std::byte> whole(target.size_bytes());
         read(target, whole.data(), whole.size());
