@@ -64,6 +64,13 @@ SK_FUNCTION sk_dims sk_cell_of_bit(sk_dims blocks, sk_u32 b, sk_u32 bit) {
 }
 SK_FUNCTION int sk_is_inside(sk_dims dims, sk_dims at) { return at.x < dims.x && at.y < dims.y && at.z < dims.z; }
 
+/** The bits of the aligned 2 x 2 x 2 cells from bit 0 on, in one word of a block's mask; and what of a cell's bit is the first of its eight. */
+#define SK_EIGHT_CELLS 0x00330033
+#define SK_FIRST_OF_EIGHT (2 + 8)
+SK_FUNCTION int sk_has_one_of_eight(sk_block block, sk_u32 bit) {
+    return ((bit < 32u ? block.mask_low : block.mask_high) >> (bit & SK_FIRST_OF_EIGHT) & SK_EIGHT_CELLS) != 0u;
+}
+
 SK_FUNCTION sk_u64 sk_mask_of(sk_block block) { return (sk_u64)block.mask_low | (sk_u64)block.mask_high << 32; }
 SK_FUNCTION sk_u32 sk_has_bit(sk_block block, sk_u32 bit) {
     return (bit < 32u ? block.mask_low : block.mask_high) >> (bit & 31u) & 1u;

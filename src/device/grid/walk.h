@@ -58,8 +58,8 @@ SK_FUNCTION sk_axis sk_make_axis(SetkaGridHeader grid, float origin, float direc
 SK_FUNCTION sk_u32 sk_cell_index(sk_axis a) { return (sk_u32)(a.index ^ a.flip); }
 
 /**
- * The index at the far face of a cube around the ray's cell: 0 is the cell itself, 4 k - 1 its block and those less than k blocks away, as
- * sk_block.clearance has it.
+ * The index at the far face of a cube around the ray's cell: 0 is the cell itself, 1 the aligned 2 x 2 x 2 cells, 4 k - 1 its block and those
+ * less than k blocks away, as sk_block.clearance has it.
  */
 SK_FUNCTION sk_i32 sk_low_of(sk_axis a, sk_i32 cube) { return (a.index & ~(cube & 3)) - (cube & ~3); }
 
@@ -161,7 +161,7 @@ SK_FUNCTION sk_search sk_move_on(SetkaGridHeader grid, sk_grid_tables tables, sk
             r.cube = (sk_i32)block.clearance;
         } else {
             const sk_u32 bit = sk_bit_in_block(x, y, z);
-            r.cube = 0;
+            r.cube = sk_has_one_of_eight(block, bit) ? 0 : 1;
             if (sk_has_bit(block, bit)) r.list = sk_find_list(tables, block, bit);
         }
     }

@@ -19,7 +19,7 @@ typedef struct sk_axis_lanes {
 
 typedef struct sk_place_lanes {
     sk_axis_lanes x, y, z;
-    sk_iN cube; /* to leave next: that of sk_low_of, or 1 for an aligned one of 2 x 2 x 2 cells */
+    sk_iN cube; /* to leave next: that of sk_low_of */
 } sk_place_lanes;
 
 /** sk_cell, also of NaN. */
@@ -103,9 +103,6 @@ typedef struct sk_listed_lanes {
     sk_found_lanes in;
 } sk_listed_lanes;
 
-/** The bits of a block's word for the 2 x 2 x 2 cells from bit 0 on. */
-#define SK_EIGHT_CELLS 0x00330033
-
 /** Looks for lists, and how large a cube the lanes may leave that have none. */
 SK_FUNCTION sk_listed_lanes sk_look_lanes(SetkaGridHeader grid, sk_grid_tables tables, sk_place_lanes* at) {
     const sk_iN zero = sk_same_i(0);
@@ -113,7 +110,7 @@ SK_FUNCTION sk_listed_lanes sk_look_lanes(SetkaGridHeader grid, sk_grid_tables t
     sk_listed_lanes r;
     r.in = sk_find_blocks(grid, tables, x, y, z);
     const sk_iN word = sk_select_i(r.in.bit > sk_same_i(31), r.in.mask_high, r.in.mask_low);
-    const sk_iN eight = word >> (r.in.bit & (2 + 8)) & SK_EIGHT_CELLS; /* those around the cell */
+    const sk_iN eight = word >> (r.in.bit & SK_FIRST_OF_EIGHT) & SK_EIGHT_CELLS; /* those around the cell */
     at->cube = ((eight == zero) & 1) | r.in.clearance;
     r.some = (word >> (r.in.bit & 31) & 1) != zero;
     return r;
