@@ -31,8 +31,9 @@ enum class MotionKind {
 /// ends hold. A skinned mesh keeps its instance, whose transform is the identity. The camera moves with its node; lights
 /// stay where they are at first.
 ///
-/// Sequences: OBJ, PLY, STL or OFF files with the same triangles in each. Triangles, materials and what is one vertex come
-/// from the first file. A mesh whose file has no normals keeps the sharp edges that it has in the first frame.
+/// Sequences: OBJ, PLY, STL or OFF files with the same triangles in each. Triangles, materials, vertex colours and what is
+/// one vertex come from the first file; those of the others are passed over. A mesh whose file has no normals keeps the
+/// sharp edges that it has in the first frame.
 class Animation {
   public:
     /// Opens, by what the text is,

@@ -14,16 +14,18 @@ namespace setka::io {
 
 /// Reads OBJ+MTL, PLY, STL, OFF, glTF and GLB: node transforms, skins at their rest pose, morph targets at the weights of their
 /// nodes or meshes, materials, vertex colours, cameras and lights; polygons become triangles, points and lines are dropped.
-/// Vertex colours are linear in glTF, in OBJ and as floats in PLY, and sRGB as integers in PLY. Of a glTF file with
-/// several scenes the one it names is read, or the first; what that does not use is left out. Throws InvalidData, in one line
-/// with the file's name, for a file that is missing, empty, truncated or malformed, of an unknown format, without any triangle,
-/// with a non-finite vertex or an index out of range.
+/// Vertex colours are linear in glTF, in OBJ and as floats in PLY, and sRGB as integers in PLY; they multiply the diffuse
+/// part of a material only, not what it mirrors or transmits. Where one vertex of an OBJ file has some, all others are white.
+/// Vertices at one place with different colours are not welded, and normals that are made here are not smooth across them.
+/// Of a glTF file with several scenes the one it names is read, or the first; what that does not use is left out. Throws
+/// InvalidData, in one line with the file's name, for a file that is missing, empty, truncated or malformed, of an unknown
+/// format, without any triangle, with a non-finite vertex or an index out of range.
 [[nodiscard]] Scene load_scene(const std::filesystem::path& file);
 /// All files in one scene, in order.
 [[nodiscard]] Scene load_scene(std::span<const std::filesystem::path> files);
 
 /// Writes a binary little-endian PLY with float positions, and normals where every mesh has them; instances are transformed.
-/// Nothing is left behind on failure. Throws InvalidArgument if the file cannot be written.
+/// Materials and vertex colours are not written. Nothing is left behind on failure. Throws InvalidArgument if the file cannot be written.
 void save_ply(const std::filesystem::path& file, const Scene& scene);
 
 /// Writes a picture by its extension: 8-bit sRGB for PNG, JPEG, TIFF, BMP, TGA and PPM; linear float for EXR, HDR and PFM.

@@ -5,6 +5,7 @@
 #include <assimp/mesh.h>
 #include <assimp/scene.h>
 
+#include <array>
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <map>
@@ -146,12 +147,14 @@ class SceneBuilder {
     std::uint32_t material_of(unsigned index, Colours colours) {
         const bool known = index < imported_.size();
         const bool is_white = colours == Colours::OfVertices && !(known && imported_[index].has_colour);
-        if (known && !is_white && numbers_.contains(index)) return numbers_[index];
+        const auto number = static_cast<std::uint32_t>(scene_.materials.size());
+        if (known) {
+            const auto [at, is_new] = numbers_[is_white].try_emplace(index, number);
+            if (!is_new) return at->second;
+        }
         Material material = known ? imported_[index].material : Material{};
         if (is_white) material.diffuse = {1, 1, 1};
-        const auto number = static_cast<std::uint32_t>(scene_.materials.size());
         scene_.materials.push_back(std::move(material));
-        if (known && !is_white) numbers_[index] = number;
         return number;
     }
 
@@ -188,7 +191,8 @@ class SceneBuilder {
     Source kind_;
     Scene scene_;
     std::vector<ImportedMaterial> imported_;
-    std::map<unsigned, std::uint32_t> numbers_;  ///< of imported materials in the scene
+    /// Of imported materials in the scene: as they are, and of their white copies.
+    std::array<std::map<unsigned, std::uint32_t>, 2> numbers_;
     std::vector<PlacedMesh> placed_;
     std::vector<Origin> origins_;  ///< of each instance
     std::vector<std::vector<std::uint32_t>> first_equal_;

@@ -43,17 +43,18 @@ class GltfChecker {
             if (json_["images"][i].contains("bufferView"))
                 (void)target(json_["images"][i], "bufferView", "bufferViews");
         drop_dangling_textures(json_);
+        check_nodes();
+        if (part == GltfFilePart::Posed) leave_weighted_targets(json_, find_used(json_));
         separate_skinned_meshes();
         CheckedGltf checked;
         std::vector<std::uint64_t> triangles;  // of each mesh
         for (std::size_t i = 0; i < size("meshes"); ++i)
             triangles.push_back(check_mesh(json_["meshes"][i], i));
-        check_nodes();
         use_ = find_used(json_);
         for (std::size_t i = 0; i < size("skins"); ++i) check_skin(json_["skins"][i], i);
         for (std::size_t i = 0; i < triangles.size(); ++i)
             if (use_.meshes[i]) checked.triangle_count += triangles[i];
-        checked.has_weights = use_.has_weights;
+        checked.has_weights = std::ranges::find(use_.weighted, true) != use_.weighted.end();
         checked.cameras = use_.cameras;
         if (part != GltfFilePart::Still)
             checked.document = std::make_shared<const GltfDocument>(file_, json_, container_.binary);
@@ -227,8 +228,11 @@ class GltfChecker {
                    "four unsigned integers of 8 or 16 bits, as it must be");
         else if (name == "WEIGHTS_0")  // assimp takes the bytes of others for floats
             demand(component == 5126 && accessor["type"] == "VEC4", "four floats; others are not read");
-        else if (!name.starts_with("COLOR"))
-            demand(component == 5126 && accessor["type"] == "VEC3", "three floats, as it must be");
+        else if (name == "COLOR_0")
+            demand((component == 5121 || component == 5123 || component == 5126) &&
+                       (accessor["type"] == "VEC3" || accessor["type"] == "VEC4"),
+                   "three or four floats or unsigned integers of 8 or 16 bits, as it must be");
+        else demand(component == 5126 && accessor["type"] == "VEC3", "three floats, as it must be");
     }
 
     /// A skinned mesh is a mesh of its own for each of its nodes: assimp keeps one skin a mesh. So is one

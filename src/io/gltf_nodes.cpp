@@ -122,10 +122,7 @@ GltfNodes::GltfNodes(const GltfDocument& document, GltfAnimation animation)
         if (json.contains("matrix")) {
             std::array<double, 16> columns;
             take(json, "matrix", columns);
-            const std::size_t number = nodes_.size();
-            if (columns[3] != 0 || columns[7] != 0 || columns[11] != 0 || columns[15] != 1)
-                fail_read(document.file(), "the transform of node " + std::to_string(number) +
-                                               " is not affine: its last row must be 0 0 0 1");
+            node.is_affine = columns[3] == 0 && columns[7] == 0 && columns[11] == 0 && columns[15] == 1;
             for (std::size_t i = 0; i < 12; ++i) node.matrix[i] = columns[i % 4 * 4 + i / 4];
             node.has_matrix = true;
         }
@@ -163,6 +160,9 @@ void GltfNodes::order() {
         open.pop_back();
         order_.push_back(node);
         nodes_[node].is_in_scene = true;
+        if (!nodes_[node].is_affine)
+            fail_read(document_.file(), "the transform of node " + std::to_string(node) +
+                                            " is not affine: its last row must be 0 0 0 1");
         for (const Json& child : document_.element("nodes", node).value("children", Json::array())) {
             parents_[child.get<std::size_t>()] = node;
             open.push_back(child.get<std::size_t>());

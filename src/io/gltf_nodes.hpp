@@ -61,7 +61,8 @@ class GltfNodes {
         std::array<double, 3> translation{0, 0, 0}, scale{1, 1, 1};
         std::array<double, 4> rotation{0, 0, 0, 1};
         std::vector<double> weights;
-        bool has_matrix = false, is_moved = false, has_moving_weights = false, is_in_scene = false;
+        bool has_matrix = false, is_affine = true;
+        bool is_moved = false, has_moving_weights = false, is_in_scene = false;
     };
     void order();
     [[nodiscard]] static Rows local(const Node& node);

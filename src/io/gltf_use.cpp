@@ -58,6 +58,7 @@ GltfUse find_used(const Json& json) {
     GltfUse use;
     use.nodes.resize(list(json, "nodes").size());
     use.meshes.resize(list(json, "meshes").size());
+    use.weighted.resize(use.meshes.size());
     use.skins.resize(list(json, "skins").size());
     std::vector<std::size_t> open;
     for (const Json& root : list(json["scenes"][json.value("scene", std::size_t(0))], "nodes"))
@@ -71,7 +72,7 @@ GltfUse find_used(const Json& json) {
             const auto mesh = node["mesh"].get<std::size_t>();
             use.meshes[mesh] = true;
             // The node's own weights count, where it has some.
-            use.has_weights |= has_weight(node.contains("weights") ? node : json["meshes"][mesh]);
+            if (has_weight(node.contains("weights") ? node : json["meshes"][mesh])) use.weighted[mesh] = true;
         }
         if (node.contains("skin")) use.skins[node["skin"].get<std::size_t>()] = true;
         for (const Json& child : list(node, "children")) open.push_back(child.get<std::size_t>());
@@ -92,6 +93,15 @@ void leave_still_part(Json& json, const GltfUse& use) {
     for (std::size_t i = 0; i < use.meshes.size(); ++i) {
         json["meshes"][i].erase("weights");
         for (Json& primitive : json["meshes"][i]["primitives"]) primitive.erase("targets");
+    }
+}
+
+void leave_weighted_targets(Json& json, const GltfUse& use) {
+    for (std::size_t i = 0; i < use.meshes.size(); ++i) {
+        if (use.weighted[i]) continue;
+        Json& mesh = json["meshes"][i];
+        if (!mesh.contains("primitives")) continue;
+        for (Json& primitive : mesh["primitives"]) primitive.erase("targets");
     }
 }
 

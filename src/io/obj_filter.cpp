@@ -3,6 +3,7 @@
 /// that were checked. assimp 5.2 refuses faces whose texture coordinates are missing, which are common and
 /// never needed here; and it cannot say in which line an index is wrong.
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <set>
 #include <vector>
@@ -37,9 +38,11 @@ class ObjFilter {
     [[nodiscard]] std::string filter() {
         // Faces may come before their vertices, so all are counted first.
         for (TextCursor lines(text_); !lines.at_end();) {
-            const std::string_view keyword = TextCursor(lines.line()).word();
+            TextCursor words(lines.line(), '#');
+            const std::string_view keyword = words.word();
             total_vertices_ += keyword == "v";
             total_normals_ += keyword == "vn";
+            if (keyword == "v" && !has_colours_) has_colours_ = has_colour(words);
         }
         output_.reserve(text_.size());
         output_ = "# reduced to what is read\n";  // and longer than what assimp takes for a file
@@ -76,9 +79,38 @@ class ObjFilter {
         fail_read(file_, "line " + std::to_string(line_number_) + ": " + reason);
     }
 
-    /// What assimp 5.2 counts as a number.
+    /// What assimp 5.2 counts as a number, once a 0 is put before a point.
     [[nodiscard]] static bool is_counted(std::string_view word) {
-        return (word[0] >= '0' && word[0] <= '9') || word[0] == '-' || word[0] == '+';
+        return (word[0] >= '0' && word[0] <= '9') || word[0] == '-' || word[0] == '+' || word[0] == '.';
+    }
+
+    [[nodiscard]] static bool has_colour(TextCursor& words) {
+        std::size_t count = 0;
+        for (std::string_view word = words.word(); !word.empty() && is_counted(word); word = words.word())
+            ++count;
+        return count >= 6;
+    }
+
+    /// assimp numbers the colours of a file one after the other, with none for a vertex that has no colour,
+    /// but looks them up by the number of the vertex: so if one has a colour, all have. There is no form
+    /// with both a weight and a colour.
+    void add_white(std::vector<std::string>& numbers) const {
+        if (numbers.size() == 4) {
+            for (std::size_t i = 0; i < 3; ++i) numbers[i] = divide(numbers[i], numbers[3]);
+            numbers.pop_back();
+        }
+        numbers.resize(6, "1");
+    }
+
+    [[nodiscard]] std::string divide(const std::string& number, const std::string& weight) const {
+        const float divisor = parse_float(weight).value_or(0);
+        if (divisor == 1) return number;
+        const float quotient = parse_float(number).value_or(NAN) / divisor;
+        if (!std::isfinite(quotient))
+            fail("'v' stands at " + in_quotes(number, 40) + " / " + in_quotes(weight, 40) +
+                 ", which is not finite");
+        char text[32];
+        return {text, std::to_chars(text, std::end(text), quotient).ptr};
     }
 
     /// The numbers of a vertex or a normal, single blanks between them. assimp counts words by its own rules,
@@ -89,9 +121,9 @@ class ObjFilter {
         for (std::string_view word = words.word(); !word.empty(); word = words.word()) {
             if (const std::optional<float> value = parse_float(word); value && !std::isfinite(*value))
                 fail(in_quotes(word, 40) + " is not finite");
+            if (!is_counted(word)) break;
             std::string number(word[0] == '.' ? 1 : 0, '0');
             number.append(word);
-            if (!is_counted(number)) break;
             numbers.push_back(std::move(number));
         }
         if (numbers.size() < 3)
@@ -99,6 +131,7 @@ class ObjFilter {
                  " numbers; at least 3 are needed");
         const bool is_vertex = keyword == "v";
         numbers.resize(is_vertex && numbers.size() >= 6 ? 6 : is_vertex && numbers.size() == 4 ? 4 : 3);
+        if (is_vertex && has_colours_ && numbers.size() < 6) add_white(numbers);
         std::string text;
         for (const std::string& number : numbers) text.append(text.empty() ? "" : " ").append(number);
         return text;
@@ -156,6 +189,7 @@ class ObjFilter {
     std::set<std::string, std::less<>> materials_;
     std::uint64_t name_comparisons_ = 0, material_changes_ = 0;
     bool has_face_ = false;
+    bool has_colours_ = false;  ///< some vertex has
     std::uint64_t line_number_ = 0, corner_count_ = 0;
     std::uint64_t vertices_ = 0, normals_ = 0, total_vertices_ = 0, total_normals_ = 0;
 };

@@ -108,15 +108,84 @@ TEST(Colours, OfObjKeepVerticesApart) {
 /// Of a sequence the first frame has the colours.
 TEST(Colours, StayInASequence) {
     const Folder folder;
-    const std::vector<std::string> colours(5, "0.5 0 0");
-    const std::vector paths{folder / "f1.ply", folder / "f2.ply"};
-    for (const auto& path : paths)
-        std::filesystem::rename(write_ply(folder, "float", path == paths[0] ? "" : "ish", colours), path);
+    const std::vector<std::string> colours{"1 1 1", "0.5 0 0", "0 0.25 0", "0 0 0.125", "0 0 1"};
+    const std::vector paths{folder / "f1.ply", folder / "f2.ply", folder / "f3.ply"};
+    std::filesystem::rename(write_ply(folder, "float", "", colours), paths[0]);
+    std::filesystem::rename(write_ply(folder, "float", "ish", colours), paths[1]);
+    std::filesystem::rename(write_ply(folder, "float", "", {5, "0.75 1 0"}), paths[2]);
     const Animation animation{std::span<const std::filesystem::path>(paths)};
+    const Float3 a{0.5f, 0, 0}, b{0, 0.25f, 0}, c{0, 0, 0.125f}, d{0, 0, 1};
     Scene scene = animation.scene();
-    apply(scene, animation.frame(2));
-    scene.validate();
-    EXPECT_THAT(corner_colours(scene.meshes.at(0)), testing::Each(Float3{0.5f, 0, 0}));
+    for (const std::uint32_t frame : {1, 2, 3}) {
+        apply(scene, animation.frame(frame));
+        scene.validate();
+        EXPECT_THAT(corner_colours(scene.meshes.at(0)), ElementsAre(a, b, c, b, a, d));
+    }
+}
+
+/// Colours on some vertices only, which assimp gives to others.
+TEST(Colours, OfSomeVerticesOfAnObjStayThere) {
+    const Folder folder;
+    const Scene scene =
+        load_scene(folder.write("a.obj",
+                                "v 0 0 0\nv 2 0 .0 2\nv 0 1 0 1 # 0 0\nv 2 0 0 .5 0 0\nv 3 0 0 0 1 0\n"
+                                "v 2 1 0 0 0 1 # last\nv 4 4 -1 0.5\no A\nf 1 2 3\no B\nf 4 5 7\nf 6 4 5\n"));
+    ASSERT_EQ(scene.meshes.size(), 2u);
+    const Float3 white{1, 1, 1}, dark_red{0.5f, 0, 0}, green{0, 1, 0}, blue{0, 0, 1};
+    EXPECT_THAT(corner_colours(scene.meshes[0]), testing::Each(white));
+    EXPECT_THAT(corner_colours(scene.meshes[1]), ElementsAre(dark_red, green, white, blue, dark_red, green));
+    EXPECT_THAT(scene.meshes[0].positions, ElementsAre(near(0, 0, 0), near(1, 0, 0), near(0, 1, 0)))
+        << "numbers that are four end with a weight";
+    EXPECT_EQ(scene.meshes[1].positions.at(scene.meshes[1].triangles.at(0).c), (Float3{8, 8, -2}));
+    const auto refuse = [&](const std::string& weight, const std::string& reason) {
+        expect_unreadable(folder.write("b.obj", "v 0 0 0 1 1 1\nv 1 1 0\nv 0 1 0 " + weight + "\nf 1 2 3\n"),
+                          "line 3: 'v' stands at " + reason);
+    };
+    refuse("0", "'0' / '0', which is not finite");
+    refuse("1e-45", "'1' / '1e-45', which is not finite");
+}
+
+/// Groups share the white that stands in for a material without a colour.
+TEST(Colours, OfManyGroupsShareMaterials) {
+    const Folder folder;
+    (void)folder.write("a.mtl", "newmtl grey\nKd 0.5 0.5 0.5\n");
+    const auto load = [&](const std::string& library, const std::string& one, const std::string& other) {
+        std::string text = library + "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\n";
+        for (int i = 0; i < 20; ++i)
+            text += "o g" + std::to_string(i) + "\n" + (i % 2 ? other : one) + "f 1 2 3\n";
+        return load_scene(folder.write("a.obj", text));
+    };
+    const Float3 white{1, 1, 1}, grey{0.5f, 0.5f, 0.5f};
+    const Scene plain = load("", "", "");
+    EXPECT_EQ(plain.instances.size(), 20u);
+    ASSERT_EQ(plain.materials.size(), 1u);
+    EXPECT_EQ(plain.materials[0].diffuse, white);
+    const Scene mixed = load("mtllib a.mtl\n", "usemtl unknown\n", "usemtl grey\n");
+    ASSERT_EQ(mixed.instances.size(), 20u);
+    ASSERT_EQ(mixed.materials.size(), 2u);
+    EXPECT_EQ(mixed.materials[mixed.instances[0].material].diffuse, white);
+    EXPECT_EQ(mixed.materials[mixed.instances[1].material].diffuse, grey);
+}
+
+TEST(Colours, OfGltfAreRefusedInOtherTypes) {
+    File file;
+    const std::size_t colours =
+        file.add<float>("VEC4", {1, 0, 0, 1, 0, 1, 0, 1, 0, 0, 1, 1, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9, 9}, 8);
+    file.json["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = colours;
+    Json& accessor = file.json["accessors"][colours];
+    for (const char* type : {"SCALAR", "VEC2", "VEC3", "VEC4", "MAT2", "MAT3", "MAT4"})
+        for (const int component : {5120, 5121, 5122, 5123, 5125, 5126}) {
+            const std::string text(type);
+            if (text == "MAT3" || text == "MAT4") accessor["count"] = 1;
+            accessor["type"] = type;
+            accessor["componentType"] = component;
+            const bool is_read = (text == "VEC3" || text == "VEC4") &&
+                                 (component == 5121 || component == 5123 || component == 5126);
+            if (is_read) EXPECT_EQ(load_scene(file.write()).meshes.at(0).colors.size(), 3u);
+            else
+                expect_unreadable(file.write(),
+                                  "COLOR_0 of a primitive of mesh 0 is not made of three or four floats");
+        }
 }
 
 }  // namespace

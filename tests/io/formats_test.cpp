@@ -104,10 +104,13 @@ TEST(Ply, ReadsBothByteOrdersAlike) {
         std::ranges::reverse(bytes);
         big += bytes;
     };
-    for (const Float3& p : {Float3{0.1f, -0.0f, 3}, Float3{1, 0, 1e-40f}, Float3{0, 1e30f, 0}}) {
+    const auto add_vertex = [&](const Float3& p, std::initializer_list<unsigned char> colour) {
         for (const float value : {p.x, p.y, p.z}) add(bytes_of(value));
-        for (const unsigned char value : {255, 0, 128}) add(bytes_of(value));
-    }
+        for (const unsigned char value : colour) add(bytes_of(value));
+    };
+    add_vertex({0.1f, -0.0f, 3}, {255, 0, 128});
+    add_vertex({1, 0, 1e-40f}, {0, 255, 0});
+    add_vertex({0, 1e30f, 0}, {128, 255, 255});
     add(bytes_of<unsigned char>(3));
     for (const int value : {2, 0, 1}) add(bytes_of(value));
     const Scene a = load_scene(folder.write("a.ply", little)), b = load_scene(folder.write("b.ply", big));
@@ -115,9 +118,14 @@ TEST(Ply, ReadsBothByteOrdersAlike) {
     EXPECT_EQ(corners(a)[1], (Float3{0.1f, -0.0f, 3}));
     // sRGB bytes become linear colours.
     EXPECT_EQ(a.materials[0].diffuse, (Float3{1, 1, 1}));
-    EXPECT_EQ(a.meshes[0].colors, std::vector(3, Float3{1, 0, a.meshes[0].colors.at(0).z}));
-    EXPECT_NEAR(a.meshes[0].colors[0].z, 0.215861, 1e-6);
-    EXPECT_EQ(a.meshes[0].colors[0], b.meshes[0].colors[2]) << "the same bytes, backwards";
+    const std::vector<Float3>& colours = a.meshes[0].colors;
+    const Triangle t = a.meshes[0].triangles.at(0);
+    const float half = colours.at(t.b).z;
+    EXPECT_NEAR(half, 0.215861, 1e-6);
+    EXPECT_EQ(colours[t.a], (Float3{half, 1, 1})) << "the face is 2 0 1";
+    EXPECT_EQ(colours[t.b], (Float3{1, 0, half}));
+    EXPECT_EQ(colours.at(t.c), (Float3{0, 1, 0}));
+    EXPECT_EQ(b.meshes[0].colors, colours);
 }
 
 TEST(Ply, RefusesWhatIsWrong) {

@@ -120,6 +120,34 @@ TEST(Morph, IsSharedWhereNoWeightMovesIt) {
     EXPECT_EQ(load_scene(file.write()).meshes.size(), 3u);
 }
 
+/// Nor are others copied for a mesh that weights move.
+TEST(Morph, IsSharedBesideOneThatWeightsMove) {
+    File file;
+    Json& meshes = add_targets(file)["meshes"];
+    meshes.push_back(meshes[0]);
+    meshes[1]["weights"] = {0.25, 0};
+    file.json["nodes"].push_back({{"mesh", 1}});
+    file.json["scenes"][0]["nodes"].push_back(3);
+    const Scene scene = load_scene(file.write());
+    ASSERT_EQ(scene.instances.size(), 3u);
+    EXPECT_EQ(scene.meshes.size(), 2u);
+    EXPECT_EQ(scene.instances[0].mesh, scene.instances[1].mesh);
+    EXPECT_THAT(stand(file, 1), ElementsAre(near(0, 0, 0), near(1, 0, 0), near(0, 1, 0)));
+    EXPECT_THAT(stand(file, 2), ElementsAre(near(0, 0, 1), near(1, 0, 0), near(0, 1, 0)));
+    file.json["nodes"][3]["weights"] = {0, 0};
+    EXPECT_EQ(load_scene(file.write()).meshes.size(), 2u) << "the node's weights count";
+}
+
+/// A matrix that cannot be used is no matter where the scene does not use it.
+TEST(Morph, StandsWhateverOtherNodesAre) {
+    File file;
+    add_targets(file)["meshes"][0]["weights"] = {0.25, 0.5};
+    file.json["nodes"].push_back({{"matrix", Json(std::vector<int>(16, 0))}});
+    EXPECT_THAT(stand(file, 0), ElementsAre(near(0, 0, 1), near(2, 0, 0), near(0, 1, 0)));
+    file.json["scenes"][0]["nodes"].push_back(3);
+    expect_unreadable(file.write(), "the transform of node 3 is not affine");
+}
+
 /// load_scene takes the weights that stand, not those of the first key, nor any other motion.
 TEST(Morph, StandsWithoutItsAnimation) {
     File file;
