@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// Can this part of a scene be used? Each check() throws InvalidData, which names it by its number and says why not.
+/// Can this part of a scene be used, and can this update be applied to it? Parts are refused with InvalidData, updates with InvalidArgument; the
+/// message names what is wrong by its number and says why.
 #pragma once
 
 #include <cstddef>
