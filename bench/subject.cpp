@@ -74,7 +74,7 @@ void Subject::rebuild() {
 
 void Subject::trace(const TraceCase& what, GridStep step) {
     const Tracer tracer({.step = step});
-    const Buffer<Ray>& batch = rays_.*what.rays;
+    const RayBatch batch(rays_.*what.rays, {}, what.is_picture() ? options_.size : 0);
     if (what.query == Query::Closest) tracer.closest_hit(queue_, *grid_, batch, hits_);
     else tracer.any_hit(queue_, *grid_, batch, flags_);
 }

@@ -26,6 +26,9 @@ struct TraceCase {
     const char* name;
     Buffer<Ray> workload::StandardRays::*rays;
     Query query;
+
+    /// Whether they come in the rows of the picture: the others are left out where nothing is hit.
+    [[nodiscard]] constexpr bool is_picture() const { return rays == &workload::StandardRays::primary; }
 };
 
 /// Three kinds of rays with the query that renderers make, then two of them with the other one.

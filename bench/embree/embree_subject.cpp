@@ -27,6 +27,19 @@ void flush_denormals() {
     return kind == &workload::StandardRays::diffuse ? Coherence::Incoherent : Coherence::Coherent;
 }
 
+/// Pieces of 4 x 2 rays of a square picture one after the other: packets as setka's own, of such rays
+/// (RayBatch::row_length).
+[[nodiscard]] std::vector<Ray> in_pieces(const std::vector<Ray>& rays, std::uint32_t size) {
+    std::vector<Ray> pieces;
+    pieces.reserve(rays.size());
+    for (std::uint32_t top = 0; top < size; top += 2)
+        for (std::uint32_t left = 0; left < size; left += 4)
+            for (std::uint32_t y = top; y < std::min(top + 2, size); ++y)
+                for (std::uint32_t x = left; x < std::min(left + 4, size); ++x)
+                    pieces.push_back(rays[std::size_t(y) * size + x]);
+    return pieces;
+}
+
 }  // namespace
 
 EmbreeSubject::EmbreeSubject(Target& target, const SceneCase& name, const LoadedScene& loaded,
@@ -36,7 +49,8 @@ EmbreeSubject::EmbreeSubject(Target& target, const SceneCase& name, const Loaded
     Queue& queue = reference.queue();
     for (const auto kind : {&workload::StandardRays::primary, &workload::StandardRays::shadow,
                             &workload::StandardRays::diffuse}) {
-        const std::vector<Ray> rays = queue.download(reference.rays().*kind);
+        std::vector<Ray> rays = queue.download(reference.rays().*kind);
+        if (kind == trace_cases[0].rays) rays = in_pieces(rays, options.size);
         batches_.push_back(
             {kind, Tracer().closest_hit(queue, reference.grid(), rays), RayPackets(rays, coherence(kind))});
     }

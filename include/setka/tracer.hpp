@@ -28,13 +28,18 @@ struct TraceOptions {
 
 /// Rays on the device, and what each of them passes through. A buffer of rays is a batch that skips nothing.
 struct RayBatch {
-    RayBatch(Buffer<Ray> all_rays, Buffer<Primitive> skipped = {})  // NOLINT(google-explicit-constructor)
-        : rays(std::move(all_rays)), skip(std::move(skipped)) {}
+    RayBatch(Buffer<Ray> all_rays, Buffer<Primitive> skipped = {},  // NOLINT(google-explicit-constructor)
+             std::uint32_t rays_in_row = 0)
+        : rays(std::move(all_rays)), skip(std::move(skipped)), row_length(rays_in_row) {}
 
     Buffer<Ray> rays;
     /// Empty, or one for each ray: rays[i] is traced as if the scene had no triangle skip[i], and nothing else is left out.
     /// For rays that start on a triangle. What names no triangle, as {SETKA_NO_HIT, SETKA_NO_HIT}, skips nothing.
     Buffer<Primitive> skip;
+    /// Of rays of a picture, row by row: how many a row has, width * samples_per_axis² for camera_rays(). CPUs
+    /// then trace closest and any hits of small tiles of the picture together, which is faster. Rays that are left out may stay in
+    /// place, with tmin > tmax. 0, or any other number: nothing but the time depends on it.
+    std::uint32_t row_length = 0;
 };
 
 struct AllHitsOptions {

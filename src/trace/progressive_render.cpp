@@ -188,12 +188,12 @@ class ProgressiveRender::Impl {
     }
 
     /// The next `samples` of each pixel.
-    [[nodiscard]] Buffer<Ray> rays(std::uint32_t first, std::uint32_t count, std::uint32_t samples) {
+    [[nodiscard]] RayBatch rays(std::uint32_t first, std::uint32_t count, std::uint32_t samples) {
         auto made = queue_.make_buffer<Ray>(std::size_t(count) * samples, "rays");
         queue_.impl().begin_stage("camera rays");
         launch_items(queue_, Kernel::shade_camera_rays, count * samples, pinhole_, first, done_, samples,
                      made);
-        return made;
+        return {made, {}, options_.width * samples};
     }
 
     void store_colours(Image& image) {

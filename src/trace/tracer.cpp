@@ -76,6 +76,12 @@ struct Query {
     [[nodiscard]] sk_trace_params params(const RayBatch& batch) const {
         sk_trace_params params = trace_params(structure.geometry(), options.mask);
         params.skips = batch.skip.empty() ? 0 : 1;
+        // A GPU's team of 32 shares the work of its rays anyway, and one whose rays all meet the same long lists ends last.
+        if (const std::uint32_t row = batch.row_length; row != 0 && queue.device().impl()->width() > 1) {
+            const auto n = static_cast<std::uint32_t>(batch.rays.size());
+            params.row_length = row;
+            params.tiled_rays = n - n % row - n / row % SK_TILE_ROWS * row;
+        }
         return params;
     }
 

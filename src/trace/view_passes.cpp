@@ -42,13 +42,13 @@ void ViewPasses::add(const SampleRays& samples, const SampleSums::Part& sums, Ra
         launch_items(queue_, Kernel::shade_add_colours, pixels, sums.first, done, each, colours, sums.before,
                      sums.after);
     } else if (view_ == View::Depth) {
-        const auto hits = queue_.make_buffer<Hit>(rays.size(), "hits");
+        const auto hits = queue_.make_buffer<Hit>(rays.rays.size(), "hits");
         tracer_.closest_hit(queue_, structure_, rays, hits);
         queue_.impl().begin_stage("view");
         launch_items(queue_, Kernel::shade_add_depths, pixels, sums.first, done, each, hits, sums.before,
                      sums.after);
     } else {
-        const auto costs = queue_.make_buffer<TraceCost>(rays.size(), "trace costs");
+        const auto costs = queue_.make_buffer<TraceCost>(rays.rays.size(), "trace costs");
         tracer_.closest_hit_cost(queue_, structure_, rays, costs);
         queue_.impl().begin_stage("view");
         launch_items(queue_, Kernel::shade_add_costs, pixels, sums.first, done, each,

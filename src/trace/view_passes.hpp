@@ -13,7 +13,7 @@ namespace setka {
 
 /// The samples that a pass adds to some pixels: their rays, pixel by pixel.
 struct SampleRays {
-    Buffer<Ray> rays;
+    RayBatch rays;
     std::uint32_t pixels = 0;
     std::uint32_t done = 0;     ///< samples of each pixel that were added before
     std::uint32_t samples = 0;  ///< of each pixel here

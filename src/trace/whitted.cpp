@@ -80,9 +80,10 @@ WhittedPasses::WhittedPasses(Queue& queue, const DeviceScene& scene, const Struc
     materials_ = queue.upload(std::span(materials), "materials");
 }
 
-Buffer<SkSurfacePoint> WhittedPasses::surfaces(const Buffer<Ray>& rays, const Buffer<float>& colours) const {
+Buffer<SkSurfacePoint> WhittedPasses::surfaces(const RayBatch& batch, const Buffer<float>& colours) const {
+    const Buffer<Ray>& rays = batch.rays;
     const auto hits = queue_.make_buffer<Hit>(rays.size(), "hits");
-    tracer_.closest_hit(queue_, structure_, rays, hits);
+    tracer_.closest_hit(queue_, structure_, batch, hits);
     auto points = queue_.make_buffer<SkSurfacePoint>(rays.size(), "surface points");
     queue_.impl().begin_stage("shade surfaces");
     launch_items(queue_, Kernel::shade_surface, items(rays), background_, offset_, rays, hits,
@@ -91,14 +92,16 @@ Buffer<SkSurfacePoint> WhittedPasses::surfaces(const Buffer<Ray>& rays, const Bu
     return points;
 }
 
-Buffer<SkSurfacePoint> WhittedPasses::surfaces(const Buffer<Ray>& rays) const {
-    return surfaces(rays, queue_.make_buffer<float>(3 * rays.size(), "colours"));
+Buffer<SkSurfacePoint> WhittedPasses::surfaces(const RayBatch& batch) const {
+    return surfaces(batch, queue_.make_buffer<float>(3 * batch.rays.size(), "colours"));
 }
 
-void WhittedPasses::add_lights(const Buffer<Ray>& rays, const Buffer<SkSurfacePoint>& points,
+void WhittedPasses::add_lights(const RayBatch& batch, const Buffer<SkSurfacePoint>& points,
                                const Buffer<float>& colours, RayCounts& count) const {
     if (lights_.empty()) return;
+    const Buffer<Ray>& rays = batch.rays;
     const auto shadow_rays = queue_.make_buffer<Ray>(rays.size(), "shadow rays");
+    const RayBatch shadow_batch(shadow_rays, {}, batch.row_length);
     const auto occluded = queue_.make_buffer<std::uint32_t>(rays.size(), "occlusion");
     const auto opaque = has_transparent_ ? queue_.make_buffer<std::uint32_t>(rays.size(), "opaque occlusion")
                                          : Buffer<std::uint32_t>();
@@ -110,11 +113,11 @@ void WhittedPasses::add_lights(const Buffer<Ray>& rays, const Buffer<SkSurfacePo
         queue_.impl().begin_stage("shade lights");
         launch_items(queue_, Kernel::shade_shadow_rays, items(rays), light, points, shadow_rays,
                      active_counts, index);
-        tracer_.any_hit(queue_, structure_, shadow_rays, occluded);
+        tracer_.any_hit(queue_, structure_, shadow_batch, occluded);
         if (has_transparent_) {
             queue_.impl().begin_stage("shade lights");
             launch_items(queue_, Kernel::shade_shadow_narrow, items(rays), occluded, shadow_rays);
-            opaque_tracer_.any_hit(queue_, structure_, shadow_rays, opaque);
+            opaque_tracer_.any_hit(queue_, structure_, shadow_batch, opaque);
         }
         queue_.impl().begin_stage("shade lights");
         launch_items(queue_, Kernel::shade_light, items(rays), light, rays, points, materials_, occluded,
@@ -123,17 +126,18 @@ void WhittedPasses::add_lights(const Buffer<Ray>& rays, const Buffer<SkSurfacePo
     count.pending_shadow.push_back(active_counts);
 }
 
-Buffer<float> WhittedPasses::colours(Buffer<Ray> rays, RayCounts& count) const {
+Buffer<float> WhittedPasses::colours(RayBatch batch, RayCounts& count) const {
     std::vector<Level> levels;
     Buffer<float> throughputs,
         weights;  // none of the first level's, whose rays have all their light before them
     for (std::uint32_t depth = 0;; ++depth) {
+        const Buffer<Ray> rays = batch.rays;
         const std::uint32_t n = items(rays);
         Level& level = levels.emplace_back();
         level.weights = std::move(weights);
         level.colours = queue_.make_buffer<float>(3 * rays.size(), "colours");
-        const auto points = surfaces(rays, level.colours);
-        add_lights(rays, points, level.colours, count);
+        const auto points = surfaces(batch, level.colours);
+        add_lights(batch, points, level.colours, count);
         if (depth == max_depth_ || !has_onward_) break;
 
         queue_.impl().begin_stage("spawn rays");
@@ -159,7 +163,7 @@ Buffer<float> WhittedPasses::colours(Buffer<Ray> rays, RayCounts& count) const {
         launch_items(queue_, Kernel::shade_child_emit, n, rays, points, materials_, throughputs,
                      std::uint32_t(depth > 0), offsets, child_rays, weights, child_throughputs);
         level.offsets = std::move(offsets);
-        rays = std::move(child_rays);
+        batch = std::move(child_rays);  // in no row
         throughputs = std::move(child_throughputs);
     }
     return gather(std::move(levels));

@@ -40,16 +40,16 @@ class WhittedPasses {
 
     /// Three floats a ray. `count` is raised by the rays that are traced for it. Waits only for the number of
     /// rays that go on, where some material lets them.
-    [[nodiscard]] Buffer<float> colours(Buffer<Ray> rays, RayCounts& count) const;
-    /// The surfaces that `rays` meet first.
-    [[nodiscard]] Buffer<SkSurfacePoint> surfaces(const Buffer<Ray>& rays) const;
+    [[nodiscard]] Buffer<float> colours(RayBatch batch, RayCounts& count) const;
+    /// The surfaces that rays meet first.
+    [[nodiscard]] Buffer<SkSurfacePoint> surfaces(const RayBatch& batch) const;
 
   private:
     struct Level;
 
-    [[nodiscard]] Buffer<SkSurfacePoint> surfaces(const Buffer<Ray>& rays,
+    [[nodiscard]] Buffer<SkSurfacePoint> surfaces(const RayBatch& batch,
                                                   const Buffer<float>& colours) const;
-    void add_lights(const Buffer<Ray>& rays, const Buffer<SkSurfacePoint>& points,
+    void add_lights(const RayBatch& batch, const Buffer<SkSurfacePoint>& points,
                     const Buffer<float>& colours, RayCounts& count) const;
     [[nodiscard]] Buffer<float> gather(std::vector<Level> levels) const;
 

@@ -103,6 +103,36 @@ TEST_P(Rays, OfAnyNumber) {
     }
 }
 
+/// Whatever a row's length is said to be, each ray is traced, once, with what it skips.
+TEST_P(Rays, InRowsOfAnyLength) {
+    setka::Queue queue = device().make_queue();
+    const setka::Scene host_scene = support::ball(200);
+    const setka::DeviceScene device_scene(queue, host_scene);
+    const auto grid = setka::make_grid_builder()->build(queue, device_scene);
+    constexpr std::size_t count = 1003;
+    const auto rays = support::adversarial_rays(oracle::make_world(host_scene), count, 45);
+    std::vector<setka::Primitive> skip(count, {SETKA_NO_HIT, SETKA_NO_HIT});
+    const auto unskipped = setka::Tracer().closest_hit(queue, grid, rays);
+    for (std::size_t i = 0; i < count; i += 3) skip[i] = {unskipped[i].primitive, unskipped[i].instance};
+    const auto expected = setka::Tracer().closest_hit(queue, grid, rays, skip);
+    ASSERT_NE(count_hits(expected), count_hits(unskipped));
+
+    setka::RayBatch batch(queue.upload(std::span(rays), "rays"), queue.upload(std::span(skip), "skip"));
+    const std::vector<setka::Hit> no_hits(count, {-1, -1, -1, 0x5e7ca, 0x5e7ca});
+    const std::vector<std::uint32_t> no_flags(count, 0x5e7ca);
+    for (const std::uint32_t row :
+         {1u, 2u, 3u, 4u, 5u, 7u, 8u, 9u, 11u, 13u, 14u, 16u, 17u, 25u, 31u, 40u, 125u, 250u, 251u, 1003u, 1004u, 0xffffffffu}) {
+        SCOPED_TRACE("rows of " + std::to_string(row));
+        batch.row_length = row;
+        const auto hits = queue.upload(std::span(no_hits), "hits");
+        const auto flags = queue.upload(std::span(no_flags), "flags");
+        setka::Tracer().closest_hit(queue, grid, batch, hits);
+        setka::Tracer().any_hit(queue, grid, batch, flags);
+        EXPECT_TRUE(support::same_hits(rays, expected, queue.download(hits)));
+        EXPECT_TRUE(support::same_occlusion(rays, expected, queue.download(flags)));
+    }
+}
+
 /// No ray slips through a closed mesh: every ray from inside hits, if it is aimed at a vertex or edge too.
 TEST_P(Rays, DoNotLeaveAClosedMesh) {
     setka::Queue queue = device().make_queue();

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /**
  * What does one work-item of a query do with the walks? On GPUs it walks with ray i of n as a member of its team; where i is past the
- * last ray it only helps. On CPUs it walks with rays i to i + SK_WIDTH - 1 of n side by side.
+ * last ray it only helps. On CPUs it walks with the rays at places i to i + SK_WIDTH - 1 of n side by side (trace/tiles.h).
  */
 #ifndef SETKA_DEVICE_GRID_TRACE_H
 #define SETKA_DEVICE_GRID_TRACE_H
@@ -9,6 +9,7 @@
 #include "device/grid/walk.h"
 #if SK_WIDTH > 1
 #include "device/grid/walk_lanes.h"
+#include "device/trace/tiles.h"
 #endif
 
 /** A ray and what it hit. */
@@ -33,6 +34,7 @@ SK_FUNCTION sk_traced sk_trace_ray(SK_SHARED sk_team* team, sk_u32 n, sk_u32 i, 
 
 /** Rays side by side and what they hit. */
 typedef struct sk_traced_lanes {
+    sk_iN number; /* of the rays */
     sk_ray_lanes ray;
     sk_best_lanes best;
 } sk_traced_lanes;
@@ -40,16 +42,18 @@ typedef struct sk_traced_lanes {
 SK_FUNCTION sk_traced_lanes sk_trace_lanes(sk_u32 n, sk_u32 i, SetkaGridHeader grid, sk_trace_params params,
                                            SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
                                            sk_grid_tables tables, const int any) {
+    sk_traced_lanes r;
     /* Lanes past the last ray trace it once more. */
-    const sk_iN lane = sk_min_i(sk_make_i(0, 1, 2, 3, 4, 5, 6, 7), sk_same_i((sk_i32)sk_min_u32(n - i, SK_WIDTH) - 1));
+#define SK_NUMBER(k) (sk_i32) sk_ray_at(params, sk_min_u32(i + (k), n - 1u))
+    r.number = SK_INTS(SK_NUMBER);
+#undef SK_NUMBER
     sk_iN skipped = sk_same_i((sk_i32)SETKA_NO_HIT);
     if (params.skips != 0u) {
-#define SK_SKIPPED(k) (sk_i32) sk_skipped_triangle(params, tables.instance_starts, skip, i + (sk_u32)sk_lane(lane, k))
+#define SK_SKIPPED(k) (sk_i32) sk_skipped_triangle(params, tables.instance_starts, skip, (sk_u32)sk_lane(r.number, k))
         skipped = SK_INTS(SK_SKIPPED);
 #undef SK_SKIPPED
     }
-    sk_traced_lanes r;
-    r.ray = sk_prepare_ray_lanes(params, rays + i, lane);
+    r.ray = sk_prepare_ray_lanes(params, rays, r.number);
     r.best = sk_walk_grid_lanes(grid, params, r.ray, tables, skipped, any);
     return r;
 }
@@ -62,13 +66,14 @@ SK_FUNCTION void sk_trace_closest(SK_SHARED sk_team* team, sk_u32 n, sk_u32 i, S
     if (i < n) {
         const sk_traced_lanes traced = sk_trace_lanes(n, i, grid, params, rays, skip, tables, 0);
         float t[SK_WIDTH], u[SK_WIDTH], v[SK_WIDTH];
-        sk_i32 triangle[SK_WIDTH];
+        sk_i32 triangle[SK_WIDTH], number[SK_WIDTH];
+        sk_store_i(traced.number, number);
         sk_store_f(sk_user_t_lanes(traced.ray, traced.best.w), t);
         sk_store_f(traced.best.u, u);
         sk_store_f(traced.best.v, v);
         sk_store_i(traced.best.triangle, triangle);
         for (sk_u32 k = 0u; k < SK_WIDTH && i + k < n; ++k)
-            hits[i + k] = sk_name_hit(params, tables.instance_starts, t[k], u[k], v[k], (sk_u32)triangle[k]);
+            hits[number[k]] = sk_name_hit(params, tables.instance_starts, t[k], u[k], v[k], (sk_u32)triangle[k]);
     }
 }
 
@@ -77,10 +82,12 @@ SK_FUNCTION void sk_trace_any(SK_SHARED sk_team* team, sk_u32 n, sk_u32 i, Setka
                               SK_GLOBAL sk_u32* occluded, sk_grid_tables tables) {
     (void)team;
     if (i < n) {
-        sk_i32 triangle[SK_WIDTH];
-        sk_store_i(sk_trace_lanes(n, i, grid, params, rays, skip, tables, 1).best.triangle, triangle);
+        const sk_traced_lanes traced = sk_trace_lanes(n, i, grid, params, rays, skip, tables, 1);
+        sk_i32 triangle[SK_WIDTH], number[SK_WIDTH];
+        sk_store_i(traced.number, number);
+        sk_store_i(traced.best.triangle, triangle);
         for (sk_u32 k = 0u; k < SK_WIDTH && i + k < n; ++k)
-            occluded[i + k] = (sk_u32)triangle[k] != SETKA_NO_HIT ? 1u : 0u;
+            occluded[number[k]] = (sk_u32)triangle[k] != SETKA_NO_HIT ? 1u : 0u;
     }
 }
 

@@ -16,6 +16,11 @@ typedef struct sk_trace_params {
     setka_u32 skips;          /* not 0: each ray has a primitive that it passes through */
     setka_u32 instance_count;
     setka_u32 triangle_count;
+    setka_u32 row_length;     /* rays of a row, if tiled_rays is not 0 */
+    setka_u32 tiled_rays;     /* so many rays from the first on are traced tile by tile: a multiple of SK_TILE_ROWS rows */
 } sk_trace_params;
+
+/** Rows of a tile (tiles.h). */
+#define SK_TILE_ROWS 2u
 
 #endif
