@@ -28,6 +28,14 @@
 #define SK_TEAM 1
 #endif
 
+/* Given by the host as well: 1 for devices with doubles. What depends on it is compared with the host's. */
+#ifndef SK_DOUBLE
+#define SK_DOUBLE 0
+#endif
+#if SK_DOUBLE
+#pragma OPENCL EXTENSION cl_khr_fp64 : enable
+#endif
+
 #if SK_TEAM > 1
 #define SK_TEAM_KERNEL __kernel __attribute__((reqd_work_group_size(SK_TEAM, 1, 1)))
 #else
@@ -44,6 +52,8 @@ typedef ulong sk_u64;
 #define sk_local_size() ((sk_u32)get_local_size(0))
 #define sk_float_bits(f) as_uint(f)
 #define sk_bits_float(u) as_float(u)
+#define sk_double_bits(d) as_ulong(d)
+#define sk_bits_double(u) as_double(u)
 #define sk_sqrt(f) sqrt(f)
 #define sk_floor(f) floor(f)
 #define sk_popcount(u) popcount(u)

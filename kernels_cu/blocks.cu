@@ -29,30 +29,30 @@ SK_KERNEL void blocks_apply(sk_u32 n, sk_u32 elements, sk_u32 groups, SK_GLOBAL 
     sk_blocks_apply(scratch, pair_scratch, n, elements, groups, sums, blocks);
 }
 
-/* Marks lie behind the counters. */
-SK_KERNEL void blocks_count(sk_u32 n, sk_u32 alone, SetkaGridHeader grid, SK_GLOBAL sk_u32* counters,
-                            SK_GLOBAL sk_block* blocks, SK_GLOBAL sk_u32* totals) {
+/* Counts in the grid that the report names; n may be more than it has. */
+SK_KERNEL void blocks_count(sk_u32 n, sk_u32 alone, SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_block* blocks,
+                            SK_GLOBAL sk_u32* report) {
     const sk_u32 b = sk_global_id();
-    if (b < n) sk_count_block(b, alone, grid, counters, counters + (size_t)n * SK_BLOCK_CELLS, blocks, totals);
+    if (b < n) sk_count_block(b, alone, sk_reported_grid(report), counters, blocks, report);
 }
 
 SK_KERNEL void blocks_lay_out(sk_u32 n, sk_u32 alone, SetkaGridHeader grid, SK_GLOBAL sk_u32* counters,
-                              SK_GLOBAL sk_block* blocks, SK_GLOBAL sk_cell_list* cells, SK_GLOBAL sk_piece* pieces,
-                              SK_GLOBAL sk_u32* totals) {
+                              SK_GLOBAL const sk_block* counted, SK_GLOBAL sk_block* blocks,
+                              SK_GLOBAL sk_cell_list* cells, SK_GLOBAL sk_piece* pieces, SK_GLOBAL sk_u32* totals) {
     const sk_u32 b = sk_global_id();
-    if (b < n)
-        sk_lay_out_block(b, alone, grid, counters, counters + (size_t)n * SK_BLOCK_CELLS, blocks, cells, pieces, totals);
+    if (b < n) sk_lay_out_block(b, alone, grid, counters, counted, blocks, cells, pieces, totals);
 }
 
-/* A work-item for each `run` triangles, elements first to n - 1. */
-SK_KERNEL void scatter_count(sk_u32 n, sk_u32 first, sk_u32 run, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
+/* A work-item for each `run` triangles of the grid that the report names, elements first to n - 1. */
+SK_KERNEL void scatter_count(sk_u32 n, sk_u32 first, sk_u32 run, SK_GLOBAL const float* triangles,
                              SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_reach* reaches, sk_u32 capacity,
-                             SK_GLOBAL sk_u32* rows, SK_GLOBAL sk_u32* totals) {
+                             SK_GLOBAL sk_u32* rows, SK_GLOBAL sk_u32* report) {
     const sk_u32 i = first + sk_global_id();
+    const SetkaGridHeader grid = sk_reported_grid(report);
     if (i < n)
         sk_count_triangles(i * run, sk_min_u32(i * run + run, grid.triangle_count), grid,
                            sk_make_scatter(triangles, counters, (SK_GLOBAL sk_u32*)0), reaches,
-                           sk_make_row_list(rows, totals, capacity));
+                           sk_make_row_list(rows, report, capacity));
 }
 
 /* A work-item a triangle. */
@@ -64,13 +64,14 @@ SK_KERNEL void scatter_place(sk_u32 n, sk_u32 first, SetkaGridHeader grid, SK_GL
 }
 
 /* A work-item for every step-th row of large triangles, elements first to n - 1. */
-SK_KERNEL void scatter_count_rows(sk_u32 n, sk_u32 first, sk_u32 step, SetkaGridHeader grid,
-                                  SK_GLOBAL const float* triangles, SK_GLOBAL sk_u32* counters, sk_u32 capacity,
-                                  SK_GLOBAL sk_u32* rows, SK_GLOBAL sk_u32* totals) {
+SK_KERNEL void scatter_count_rows(sk_u32 n, sk_u32 first, sk_u32 step, SK_GLOBAL const float* triangles,
+                                  SK_GLOBAL sk_u32* counters, sk_u32 capacity, SK_GLOBAL sk_u32* rows,
+                                  SK_GLOBAL sk_u32* report) {
     const sk_u32 r = first + sk_global_id();
     if (r < n)
-        sk_take_listed(r, step, grid, sk_make_scatter(triangles, counters, (SK_GLOBAL sk_u32*)0),
-                       sk_make_row_list(rows, totals, capacity), 0);
+        sk_take_listed(r, step, sk_reported_grid(report),
+                       sk_make_scatter(triangles, counters, (SK_GLOBAL sk_u32*)0),
+                       sk_make_row_list(rows, report, capacity), 0);
 }
 
 SK_KERNEL void scatter_place_rows(sk_u32 n, sk_u32 first, sk_u32 step, SetkaGridHeader grid,

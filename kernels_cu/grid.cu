@@ -7,10 +7,17 @@
 SK_KERNEL void grid_transform(sk_u32 n, sk_u32 elements, sk_u32 instance_count, SK_GLOBAL const float* positions,
                               SK_GLOBAL const sk_u32* indices, SK_GLOBAL const SetkaInstance* instances,
                               SK_GLOBAL const sk_u32* instance_starts, SK_GLOBAL float* triangles,
-                              SK_GLOBAL sk_u32* world) {
+                              SK_GLOBAL sk_u32* report) {
     SK_LOCAL_STORAGE sk_u32 scratch[SK_BOUNDS_VALUES * SK_MAX_GROUP];
     sk_grid_transform(scratch, n, elements, instance_count, positions, indices, instances, instance_starts, triangles,
-                      world);
+                      report);
+}
+
+/* One work-item. */
+SK_KERNEL void grid_resolve(sk_u32 n, sk_u32 blocks, float density, sk_u32 max_cells, sk_u32 triangle_count,
+                            sk_u32 instance_count, SK_GLOBAL sk_u32* report) {
+    if (sk_global_id() < n)
+        sk_grid_resolve(blocks, sk_make_cell_wish(density, max_cells, triangle_count, instance_count), report);
 }
 
 SK_KERNEL void grid_rows(sk_u32 n, SetkaGridHeader grid, SK_GLOBAL const float* triangles, SK_GLOBAL sk_u32* rows) {

@@ -14,6 +14,7 @@
 
 #define SK_WIDTH 1u
 #define SK_TEAM 32
+#define SK_DOUBLE 1
 /* So many teams on a multiprocessor leave 72 registers for a work-item: 1.0 to 1.07 times the rate of 32 with 64, on an H200. */
 #define SK_TEAM_KERNEL extern "C" __global__ __launch_bounds__(SK_TEAM, 28)
 
@@ -27,6 +28,8 @@ typedef unsigned long long sk_u64;
 #define sk_local_size() (blockDim.x)
 #define sk_float_bits(f) __float_as_uint(f)
 #define sk_bits_float(u) __uint_as_float(u)
+#define sk_double_bits(d) ((sk_u64)__double_as_longlong(d))
+#define sk_bits_double(u) __longlong_as_double((long long)(u))
 #define sk_sqrt(f) __fsqrt_rn(f)
 #define sk_floor(f) floorf(f)
 #define sk_popcount(u) ((sk_u32)__popc(u))

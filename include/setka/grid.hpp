@@ -43,7 +43,21 @@ struct GridResolution {
 [[nodiscard]] GridResolution grid_resolution(const Bounds& bounds, std::uint32_t triangle_count,
                                              const GridOptions& options);
 
+struct GridStart;  // opaque to users
 struct GridCount;  // opaque to users
+
+/// A grid of which nothing is known yet: its scene is being transformed, and as a rule its cells are being counted, on the device. The scene
+/// may be edited meanwhile. Makes one plan; one that is dropped gives back what it holds.
+class StartedGrid {
+  public:
+    StartedGrid() = default;
+    StartedGrid(StartedGrid&&) = default;
+    StartedGrid& operator=(StartedGrid&&) = default;
+
+  private:
+    friend class UniformGridBuilder;
+    std::shared_ptr<GridStart> start_;
+};
 
 /// A grid that is counted but not yet written: every size is known, and what counting found is held, on the device; its tables are not
 /// allocated. Makes one grid.
@@ -55,7 +69,8 @@ class GridPlan {
     [[nodiscard]] std::uint64_t row_count() const noexcept { return row_count_; }
     /// Bytes of the finished grid's sections.
     [[nodiscard]] std::uint64_t table_bytes() const noexcept { return table_bytes_; }
-    /// The most bytes live at any time of plan() and build(), tables included, beyond the scene itself. Exact.
+    /// The most bytes live at any time of start(), plan() and build(), tables included, beyond the scene itself. Exact. Where they fit the
+    /// budget, some of them are room for cells that there might have been; a smaller budget may therefore do.
     [[nodiscard]] std::uint64_t peak_bytes() const noexcept { return peak_bytes_; }
 
     GridPlan() = default;
@@ -119,9 +134,15 @@ class Grid final : public Structure {
 class GridBuilder {
   public:
     virtual ~GridBuilder() = default;
-    /// Transform, bounds, resolution and count. Throws InvalidArgument for options out of range, InvalidData for a triangle
-    /// that is not finite in world space, OutOfMemory if the finished build would not fit the device's budget.
-    [[nodiscard]] virtual GridPlan plan(Queue& queue, const DeviceScene& scene) const = 0;
+    /// Enqueues transform, bounds, resolution and count, and does not wait: to have other work done until plan(). With tables made by
+    /// sorting, on devices without doubles, where memory is short, and where a stop can be requested of the queue it enqueues the
+    /// transform and the bounds alone, and plan() the rest.
+    [[nodiscard]] virtual StartedGrid start(Queue& queue, const DeviceScene& scene) const = 0;
+    /// What the tables need; waits, once as a rule, and again for a sheet or a line, for very many large triangles, and where memory is short.
+    /// The queue must be that of start(), and the builder one with its options. Throws InvalidData for a triangle that is not finite in world space, OutOfMemory if the
+    /// finished build would not fit the device's budget, and InvalidArgument if `started` was planned before.
+    [[nodiscard]] virtual GridPlan plan(Queue& queue, StartedGrid started) const = 0;
+    [[nodiscard]] GridPlan plan(Queue& queue, const DeviceScene& scene) const { return plan(queue, start(queue, scene)); }
     /// The tables.
     [[nodiscard]] virtual Grid build(Queue& queue, GridPlan plan) const = 0;
     [[nodiscard]] Grid build(Queue& queue, const DeviceScene& scene) const { return build(queue, plan(queue, scene)); }

@@ -2,17 +2,21 @@
 #include "accel/compact_tables.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <span>
 #include <string>
 
 #include "algo/scan.hpp"
 #include "algo/shape.hpp"
 #include "core/launch.hpp"
-#include "device/grid/limits.h"
 #include "setka/error.hpp"
 
 namespace setka {
 
 namespace {
+
+using HeaderWords = std::array<std::uint32_t, SK_REPORT - SK_REPORT_HEADER>;
+static_assert(sizeof(HeaderWords) == sizeof(::SetkaGridHeader));
 
 std::uint32_t in_fours(std::uint32_t n) noexcept { return (n + 3) / 4; }
 
@@ -53,27 +57,42 @@ std::uint64_t counter_count(const std::uint32_t (&dims)[3]) noexcept {
     return std::uint64_t(in_fours(dims[0])) * in_fours(dims[1]) * in_fours(dims[2]) * SK_BLOCK_CELLS + mark_count(dims);
 }
 
-Buffer<std::uint32_t> make_counters(Queue& queue, const ::SetkaGridHeader& header) {
-    auto counters = queue.make_buffer<std::uint32_t>(counter_count(header.dims), "cell counters and marks");
+Buffer<std::uint32_t> make_counters(Queue& queue, std::uint64_t words) {
+    auto counters = queue.make_buffer<std::uint32_t>(words, "cell counters and marks");
     queue.impl().fill(*counters.memory(), 0, counters.size_bytes());
     return counters;
 }
 
-Buffer<std::uint32_t> make_totals(Queue& queue) {
-    auto totals = queue.make_buffer<std::uint32_t>(SK_TOTALS, "totals of blocks");
-    queue.impl().fill(*totals.memory(), 0, totals.size_bytes());
-    return totals;
+Buffer<std::uint32_t> make_report(Queue& queue) {
+    auto report = queue.make_buffer<std::uint32_t>(SK_REPORT, "report of the build");
+    queue.impl().fill(*report.memory(), 0, report.size_bytes());
+    return report;
 }
 
-BlockTotals read_totals(Queue& queue, const Buffer<std::uint32_t>& totals) {
-    const auto words = queue.download(totals);
-    return {words[SK_TOTAL_CELLS],
-            words[SK_TOTAL_PAIRS_LOW] | std::uint64_t(words[SK_TOTAL_PAIRS_HIGH]) << 32,
-            words[SK_TOTAL_LONGEST],
-            words[SK_TOTAL_ROWS],
-            words[SK_TOTAL_LONG],
-            words[SK_TOTAL_FOUND],
-            words[SK_TOTAL_PIECES]};
+void report_header(Queue& queue, const Buffer<std::uint32_t>& report, const ::SetkaGridHeader& header) {
+    const auto words = std::bit_cast<HeaderWords>(header);
+    queue.impl().fill(*report.memory(), 0, SK_TOTALS * sizeof(std::uint32_t));
+    queue.upload(std::span<const std::uint32_t>(words), report, SK_REPORT_HEADER);
+}
+
+Report read_report(Queue& queue, const Buffer<std::uint32_t>& report) {
+    Report words;
+    queue.download(report, std::span<std::uint32_t>(words));
+    return words;
+}
+
+BlockTotals totals_of(const Report& report) noexcept {
+    return {report[SK_TOTAL_CELLS],
+            report[SK_TOTAL_PAIRS_LOW] | std::uint64_t(report[SK_TOTAL_PAIRS_HIGH]) << 32,
+            report[SK_TOTAL_LONGEST],
+            report[SK_TOTAL_ROWS],
+            report[SK_TOTAL_LONG],
+            report[SK_TOTAL_FOUND],
+            report[SK_TOTAL_PIECES]};
+}
+
+bool has_header(const Report& report, const ::SetkaGridHeader& header) noexcept {
+    return std::ranges::equal(std::span(report).subspan<SK_REPORT_HEADER>(), std::bit_cast<HeaderWords>(header));
 }
 
 std::uint64_t block_sums_bytes(const Device& device, std::uint32_t blocks) {
@@ -81,7 +100,7 @@ std::uint64_t block_sums_bytes(const Device& device, std::uint32_t blocks) {
 }
 
 Buffer<std::uint64_t> enqueue_block_sums(Queue& queue, const Buffer<std::uint32_t>& blocks,
-                                         const Buffer<std::uint32_t>& totals) {
+                                         const Buffer<std::uint32_t>& report) {
     const auto n = static_cast<std::uint32_t>(blocks.size() / block_words);
     const PrimitiveLayout layout = primitive_layout(queue.device(), n);
     auto sums = queue.make_buffer<std::uint64_t>(2 * (layout.groups + std::size_t(1)), "sums of blocks");
@@ -89,7 +108,7 @@ Buffer<std::uint64_t> enqueue_block_sums(Queue& queue, const Buffer<std::uint32_
     launch_groups(queue, Kernel::blocks_reduce, layout.groups, layout.group_size, n, layout.elements,
                   layout.groups, blocks, sums);
     launch_groups(queue, Kernel::blocks_spine, 1, layout.group_size, layout.groups, spine_elements, sums,
-                  totals);
+                  report);
     return sums;
 }
 
@@ -111,10 +130,10 @@ CompactTables import_tables(Queue& queue, const ::SetkaGridHeader& header, const
     queue.impl().fill(*marks.memory(), 0, marks.size_bytes());
     BlockTotals totals;
     {
-        const auto words = make_totals(queue);
-        launch_items(queue, Kernel::import_blocks, n, header, flat.counts, marks, tables.blocks, words);
-        const auto sums = enqueue_block_sums(queue, tables.blocks, words);
-        totals = read_totals(queue, words);
+        const auto report = make_report(queue);
+        launch_items(queue, Kernel::import_blocks, n, header, flat.counts, marks, tables.blocks, report);
+        const auto sums = enqueue_block_sums(queue, tables.blocks, report);
+        totals = totals_of(read_report(queue, report));
         if (totals.pairs != flat.references.size())
             throw Error(ErrorCategory::InvalidArgument,
                         "counts add up to " + std::to_string(totals.pairs) + "; references has " +
@@ -135,7 +154,7 @@ std::uint64_t import_bytes(const Device& device, const ::SetkaGridHeader& header
     constexpr std::uint64_t word = sizeof(std::uint32_t);
     const std::uint32_t n = block_count(header);
     return (n * block_words + mark_count(header.dims)) * word +
-           std::max(SK_TOTALS * word + block_sums_bytes(device, n),
+           std::max(report_bytes + block_sums_bytes(device, n),
                     (cells * (cell_words + std::uint64_t(1)) + header.reference_count) * word);
 }
 

@@ -3,8 +3,10 @@
 /// device/grid/blocks.h: sizes, the scan over blocks, and the exchange with flat tables.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
+#include "device/grid/limits.h"
 #include "setka/grid.hpp"
 
 namespace setka {
@@ -16,8 +18,8 @@ namespace setka {
 [[nodiscard]] std::uint64_t counter_count(const std::uint32_t (&dims)[3]) noexcept;
 /// Of the marks alone.
 [[nodiscard]] std::uint32_t mark_count(const std::uint32_t (&dims)[3]) noexcept;
-/// Counters and marks, all 0.
-[[nodiscard]] Buffer<std::uint32_t> make_counters(Queue& queue, const ::SetkaGridHeader& header);
+/// So many counters and marks, all 0.
+[[nodiscard]] Buffer<std::uint32_t> make_counters(Queue& queue, std::uint64_t words);
 
 /// Words of a block's and a cell's record.
 inline constexpr std::uint64_t block_words = 4, cell_words = 2;
@@ -33,15 +35,24 @@ struct BlockTotals {
     std::uint32_t pieces = 0;        ///< of lists that one work-item does not sort alone
 };
 
-/// Words of kernels to the host: device/grid/limits.h.
-[[nodiscard]] Buffer<std::uint32_t> make_totals(Queue& queue);
-[[nodiscard]] BlockTotals read_totals(Queue& queue, const Buffer<std::uint32_t>& totals);
+/// Words of kernels to each other and the host, all 0: device/grid/limits.h.
+[[nodiscard]] Buffer<std::uint32_t> make_report(Queue& queue);
+inline constexpr std::uint64_t report_bytes = SK_REPORT * sizeof(std::uint32_t);
+/// From here on kernels count in this grid, and totals are 0.
+void report_header(Queue& queue, const Buffer<std::uint32_t>& report, const ::SetkaGridHeader& header);
+
+using Report = std::array<std::uint32_t, SK_REPORT>;
+/// Waits.
+[[nodiscard]] Report read_report(Queue& queue, const Buffer<std::uint32_t>& report);
+[[nodiscard]] BlockTotals totals_of(const Report& report) noexcept;
+/// Whether the header in the report is this one, bit for bit.
+[[nodiscard]] bool has_header(const Report& report, const ::SetkaGridHeader& header) noexcept;
 
 /// Bytes of the sums of a scan over so many blocks.
 [[nodiscard]] std::uint64_t block_sums_bytes(const Device& device, std::uint32_t blocks);
 /// Enqueues the scan of the blocks' cells and pairs, up to the totals. Hands back the sums for what follows.
 [[nodiscard]] Buffer<std::uint64_t> enqueue_block_sums(Queue& queue, const Buffer<std::uint32_t>& blocks,
-                                                       const Buffer<std::uint32_t>& totals);
+                                                       const Buffer<std::uint32_t>& report);
 /// The rest of the scan: each block learns where its cells and lists begin.
 void enqueue_block_starts(Queue& queue, const Buffer<std::uint64_t>& sums,
                           const Buffer<std::uint32_t>& blocks);

@@ -19,6 +19,13 @@
 
 namespace setka {
 
+/// What is under way.
+struct GridStart {
+    GridLimits limits;
+    StartedTransform transform;
+    ScatteredCount count;
+};
+
 /// What a plan keeps for the build: one of two.
 struct GridCount {
     std::optional<ScatteredCount> scattered;
@@ -28,22 +35,6 @@ struct GridCount {
 namespace {
 
 constexpr std::uint64_t word = sizeof(std::uint32_t);
-
-::SetkaGridHeader make_header(const WorldGeometry& geometry, const GridResolution& resolution) {
-    ::SetkaGridHeader header{};
-    for (int axis = 0; axis < 3; ++axis) {
-        header.origin[axis] = geometry.bounds.lower[axis];
-        header.dims[axis] = resolution.dims[axis];
-    }
-    header.cell_size = resolution.cell_size;
-    header.inverse_cell_size = 1.0f / resolution.cell_size;
-    header.tolerance = static_cast<float>(*std::ranges::max_element(header.dims)) * 0x1p-17f;
-    header.cell_count = static_cast<std::uint32_t>(resolution.cell_count());
-    header.triangle_count = geometry.triangle_count;
-    header.instance_count = geometry.instance_count;
-    header.extent = extent_of(geometry.bounds);
-    return header;
-}
 
 /// Bytes of the finished grid's sections.
 std::uint64_t table_bytes_of(const WorldGeometry& geometry, const ::SetkaGridHeader& header,
@@ -59,17 +50,33 @@ class UniformGridBuilder final : public GridBuilder {
   public:
     explicit UniformGridBuilder(const GridOptions& options) : options_(options) { check_options(options); }
 
-    [[nodiscard]] GridPlan plan(Queue& queue, const DeviceScene& scene) const override {
+    [[nodiscard]] StartedGrid start(Queue& queue, const DeviceScene& scene) const override {
         const GridLimits limits(queue.device(), options_);
+        StartedGrid started;
+        started.start_ = std::make_shared<GridStart>(GridStart{limits, start_transform(queue, scene), {}});
+        GridStart& start = *started.start_;
+        if (options_.cell_tables == CellTables::Scatter)
+            start.count = start_count(queue, start.transform, options_, limits);
+        return started;
+    }
+
+    using GridBuilder::plan;
+    [[nodiscard]] GridPlan plan(Queue& queue, StartedGrid started) const override {
+        const auto start = std::exchange(started.start_, {});
+        if (!start)
+            throw Error(ErrorCategory::InvalidArgument,
+                        "started was planned or moved from before; it makes one plan");
+        const GridLimits& limits = start->limits;
         GridPlan plan;
-        plan.geometry_ = transform_scene(queue, scene);
-        const std::uint32_t n = plan.geometry_.triangle_count;
-        const GridResolution resolution = grid_resolution(plan.geometry_.bounds, n, options_);
+        plan.geometry_ = std::move(start->transform.geometry);
+        const Report words = read_report(queue, std::exchange(start->transform.report, {}));
+        take_bounds(words, plan.geometry_);
+        const GridResolution resolution =
+            grid_resolution(plan.geometry_.bounds, plan.geometry_.triangle_count, options_);
         limits.check_cells(resolution);
         plan.header_ = make_header(plan.geometry_, resolution);
-        const std::uint64_t stage_bytes = count(queue, plan, limits);
-        plan.peak_bytes_ = plan.geometry_.triangles.size_bytes() +
-                           std::max(stage_bytes, transform_scratch_bytes);
+        const std::uint64_t stage_bytes = count(queue, plan, limits, std::move(start->count), words);
+        plan.peak_bytes_ = plan.geometry_.triangles.size_bytes() + std::max(stage_bytes, report_bytes);
         limits.check_budget(plan.peak_bytes_, "for " + std::to_string(plan.pair_count()) + " pairs in " +
                                                   std::to_string(plan.header_.cell_count) + " cells");
         limits.check_allocation(plan.pair_count(), "references");
@@ -97,18 +104,20 @@ class UniformGridBuilder final : public GridBuilder {
 
   private:
     /// Counts, and says how many bytes counting and building hold beside the world's triangles.
-    [[nodiscard]] std::uint64_t count(Queue& queue, GridPlan& plan, const GridLimits& limits) const {
+    [[nodiscard]] std::uint64_t count(Queue& queue, GridPlan& plan, const GridLimits& limits, ScatteredCount started,
+                                      const Report& words) const {
         ::SetkaGridHeader& header = plan.header_;
         plan.count_ = std::make_shared<GridCount>();
-        std::uint64_t attempt_bytes = 0;
+        std::uint64_t held_bytes = 0;
         if (options_.cell_tables == CellTables::Scatter) {
-            plan.count_->scattered = count_scattered(queue, plan.geometry_, header, limits, attempt_bytes);
+            plan.count_->scattered =
+                finish_count(queue, plan.geometry_, header, limits, std::move(started), words, held_bytes);
             if (const auto& scattered = plan.count_->scattered) {
                 plan.row_count_ = scattered->rows;
                 plan.table_bytes_ = table_bytes_of(plan.geometry_, header, scattered->cells);
                 limits.check_allocation(std::uint64_t(scattered->cells) * cell_words, "cells");
                 limits.check_allocation(std::uint64_t(scattered->pieces) * SK_PIECE, "sorted runs");
-                return scattered_bytes(queue.device(), header, *scattered);
+                return std::max(held_bytes, scattered_bytes(queue.device(), header, *scattered));
             }
         }
         const SortedCount& sorted =
@@ -116,7 +125,7 @@ class UniformGridBuilder final : public GridBuilder {
         plan.row_count_ = sorted.rows;
         plan.table_bytes_ = table_bytes_of(plan.geometry_, header, sorted.cells);
         limits.check_allocation(std::uint64_t(sorted.cells) * cell_words, "cells");
-        return std::max(attempt_bytes, sorted_bytes(queue, header, sorted));
+        return std::max(held_bytes, sorted_bytes(queue, header, sorted));
     }
 
     GridOptions options_;

@@ -53,12 +53,16 @@ void GridLimits::check_budget(std::uint64_t bytes, const std::string& purpose) c
 }
 
 void GridLimits::check_allocation(std::uint64_t words, const std::string& name) const {
-    if (words * word <= device_.info().max_allocation_bytes) return;
+    if (fits_an_allocation(words)) return;
     throw Error(ErrorCategory::OutOfMemory, "density " + std::to_string(options_.density) + " needs " +
                                                 bytes_text(words * word) + " for '" + name + "'; " +
                                                 device_.info().name + " allows " +
                                                 std::to_string(device_.info().max_allocation_bytes) +
                                                 " in one allocation: use a lower density");
+}
+
+bool GridLimits::fits_an_allocation(std::uint64_t words) const {
+    return words * word <= device_.info().max_allocation_bytes;
 }
 
 void GridLimits::refuse_count(const std::string& count) const {
@@ -67,11 +71,11 @@ void GridLimits::refuse_count(const std::string& count) const {
                                                 ": use a lower density or fewer cells along an axis");
 }
 
-std::uint64_t rows_a_launch(const Device& device, const ::SetkaGridHeader& header) {
+std::uint64_t rows_a_launch(const Device& device, const std::uint32_t (&dims)[3]) {
     const bool is_cpu = device.info().type == DeviceType::Cpu;
     const std::uint64_t columns = is_cpu ? 1u << 23 : 1u << 26;
     const std::uint64_t filling = is_cpu ? 1 : 2048 * std::uint64_t(device.info().compute_units);
-    return std::max(columns / *std::ranges::max_element(header.dims), filling);
+    return std::max(columns / *std::ranges::max_element(dims), filling);
 }
 
 }  // namespace setka

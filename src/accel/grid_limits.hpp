@@ -25,6 +25,7 @@ class GridLimits {
     void check_budget(std::uint64_t bytes, const std::string& purpose) const;
     /// Throws if a table of `words` would be larger than any allocation of the device.
     void check_allocation(std::uint64_t words, const std::string& name) const;
+    [[nodiscard]] bool fits_an_allocation(std::uint64_t words) const;
     /// Throws: there are more of something than tables can number.
     [[noreturn]] void refuse_count(const std::string& count) const;
 
@@ -36,6 +37,6 @@ class GridLimits {
 
 /// The most rows of cells of one launch where a stop can be requested: a fraction of a second of work, even if each is as wide
 /// as the grid, and enough to fill a GPU.
-[[nodiscard]] std::uint64_t rows_a_launch(const Device& device, const ::SetkaGridHeader& header);
+[[nodiscard]] std::uint64_t rows_a_launch(const Device& device, const std::uint32_t (&dims)[3]);
 
 }  // namespace setka

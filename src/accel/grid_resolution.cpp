@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: MIT
+// The dialect's translation for the host comes before every file in it.
+#include "device/host_platform.h"
+// The dialect.
+#include "device/grid/resolution.h"
+
 #include "accel/grid_resolution.hpp"
 
 #include <algorithm>
@@ -6,7 +11,6 @@
 #include <string>
 
 #include "accel/world_geometry.hpp"
-#include "core/exact_math.hpp"
 #include "setka/error.hpp"
 
 namespace setka {
@@ -46,38 +50,19 @@ GridResolution grid_resolution(const Bounds& bounds, std::uint32_t triangle_coun
                                const GridOptions& options) {
     check_options(options);
     check_bounds(bounds, triangle_count);
-    double extents[3];
-    bool active[3] = {true, true, true};
-    for (int axis = 0; axis < 3; ++axis)
-        extents[axis] = double(bounds.upper[axis]) - double(bounds.lower[axis]);
-    const double cells = double(options.density) * triangle_count;
-
-    const double longest = *std::ranges::max_element(extents);
-    const double whole = longest > 0 ? longest : 1;  // one cell holds everything
-    double size = whole;
-    for (unsigned count = 3; count > 0; --count) {
-        double volume = 1;
-        int shortest = -1;
-        for (int axis = 0; axis < 3; ++axis) {
-            if (!active[axis]) continue;
-            volume *= extents[axis];
-            if (shortest < 0 || extents[axis] < extents[shortest]) shortest = axis;
-        }
-        size = exact::root(volume / cells, count);
-        if (extents[shortest] > 0 && !(extents[shortest] < size)) break;
-        active[shortest] = false;  // one cell thick: the others alone decide how long a cell is
-        size = whole;
-    }
-    size = std::max({size, longest / options.max_cells_per_axis, 0x1p-80});
-
+    const sk_resolution found =
+        sk_find_resolution(bounds, sk_make_cell_wish(options.density, options.max_cells_per_axis, triangle_count, 0));
     GridResolution resolution;
-    resolution.cell_size = static_cast<float>(size);
-    for (int axis = 0; axis < 3; ++axis)
-        if (active[axis])
-            resolution.dims[axis] =
-                static_cast<std::uint32_t>(std::clamp(std::ceil(extents[axis] / double(resolution.cell_size)),
-                                                      1.0, double(options.max_cells_per_axis)));
+    resolution.cell_size = found.cell_size;
+    std::ranges::copy(found.dims, resolution.dims);
     return resolution;
+}
+
+::SetkaGridHeader make_header(const WorldGeometry& geometry, const GridResolution& resolution) {
+    sk_resolution cells{resolution.cell_size, {}};
+    std::ranges::copy(resolution.dims, cells.dims);
+    return sk_make_header(geometry.bounds, cells,
+                          sk_make_cell_wish(0, 0, geometry.triangle_count, geometry.instance_count));
 }
 
 }  // namespace setka

@@ -2,8 +2,11 @@
 #include "accel/scattered_lists.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "accel/compact_tables.hpp"
+#include "core/exact_math.hpp"
 #include "core/launch.hpp"
 #include "device/grid/limits.h"
 
@@ -19,9 +22,6 @@ constexpr std::uint64_t reach_words = 4, row_words = 2, piece_words = 4;
 std::uint32_t longest_alone(const Device& device) {
     return device.options().primitives == PrimitiveShape::Serial ? 512 : 32;
 }
-
-/// Rows of large triangles that are provided for before any is seen: one a triangle, and those of some giants.
-std::uint32_t usual_rows(const ::SetkaGridHeader& header) { return header.triangle_count + 8192; }
 
 /// The most pieces that one work-item cuts a list into, for drivers that end loops early (algo/shape.hpp).
 constexpr std::uint32_t most_pieces = 30000;
@@ -43,25 +43,55 @@ std::uint32_t triangles_an_item(const Device& device) {
     return device.options().primitives == PrimitiveShape::Serial ? 8 : 1;
 }
 
-/// Counts every triangle in its cells, and the blocks' cells and pairs.
-BlockTotals count_all(Queue& queue, const WorldGeometry& geometry, const ::SetkaGridHeader& header,
-                      ScatteredCount& count) {
-    const std::uint32_t n = header.triangle_count, items = row_items(queue.device(), count.row_capacity);
+/// Rows of large triangles that are provided for before any is seen: one a triangle, and those of some giants.
+std::uint32_t usual_rows(std::uint32_t triangles) { return triangles + 8192; }
+
+/// Room for this grid.
+CountRoom room_of(const ::SetkaGridHeader& header, std::uint32_t rows) {
+    return {rows, block_count(header), counter_count(header.dims)};
+}
+
+/// Room for the grid of a usual scene with so many triangles, or for none. Blocks at the sides reach beyond the cells, by up to four cells
+/// along each axis: 20 times a side of a cube of the cells is enough for boxes with sides of 1 : 1 : 1/8. A quarter more lets
+/// flat ones fit that are large. No scene needs more than the most cells along each axis.
+CountRoom usual_room(std::uint32_t triangles, const GridOptions& options) {
+    const double cells = double(options.density) * triangles, side = exact::root(cells, 3);
+    const double axis = (options.max_cells_per_axis + 3) / 4, most = axis * axis * axis;  // NOLINT: whole blocks
+    const double blocks = std::min(std::ceil((1.25 * cells + 20 * side * side + 4096) / SK_BLOCK_CELLS), most);
+    if (blocks * SK_BLOCK_CELLS > double(most_entries)) return {};
+    const auto whole = static_cast<std::uint32_t>(blocks);
+    return {usual_rows(triangles), whole, whole * std::uint64_t(SK_BLOCK_CELLS + 1)};  // a mark's word a block at most
+}
+
+/// The bytes that counting holds, world triangles not included.
+std::uint64_t count_bytes(const Device& device, std::uint32_t triangles, const CountRoom& room) {
+    return report_bytes +
+           (room.counters + room.blocks * block_words + triangles * reach_words + room.rows * row_words) * word +
+           block_sums_bytes(device, room.blocks);
+}
+
+/// Counts every triangle in its cells of the grid in the report, and the blocks' cells and pairs.
+ScatteredCount enqueue_count(Queue& queue, const WorldGeometry& geometry, const Buffer<std::uint32_t>& report,
+                             const CountRoom& room, std::uint64_t most_rows) {
+    const std::uint32_t n = geometry.triangle_count, items = row_items(queue.device(), room.rows);
+    ScatteredCount count;
+    count.room = room;
+    count.report = report;
     queue.impl().begin_stage("count");
-    count.row_list = queue.make_buffer<std::uint32_t>(count.row_capacity * row_words, "rows of large triangles");
-    queue.impl().fill(*count.totals.memory(), 0, count.totals.size_bytes());
-    count.counters = make_counters(queue, header);
+    count.blocks = queue.make_buffer<std::uint32_t>(room.blocks * block_words, "counted blocks");
+    count.reaches = queue.make_buffer<std::uint32_t>(n * reach_words, "cells of small triangles");
+    count.row_list = queue.make_buffer<std::uint32_t>(room.rows * row_words, "rows of large triangles");
+    count.counters = make_counters(queue, room.counters);
     const std::uint32_t run = triangles_an_item(queue.device());
     launch_range(queue, Kernel::scatter_count, (n + run - 1) / run, triangles_a_launch(queue.device()) / run, run,
-                 header, geometry.triangles,
-                 count.counters, count.reaches, count.row_capacity, count.row_list, count.totals);
-    launch_range(queue, Kernel::scatter_count_rows, items, rows_a_launch(queue.device(), header) / 16, items,
-                 header, geometry.triangles, count.counters, count.row_capacity, count.row_list, count.totals);
+                 geometry.triangles, count.counters, count.reaches, room.rows, count.row_list, report);
+    launch_range(queue, Kernel::scatter_count_rows, items, most_rows / 16, items, geometry.triangles, count.counters,
+                 room.rows, count.row_list, report);
     queue.impl().begin_stage("blocks");
-    launch_items(queue, Kernel::blocks_count, block_count(header),
-                 longest_alone(queue.device()), header, count.counters, count.blocks, count.totals);
-    count.sums = enqueue_block_sums(queue, count.blocks, count.totals);
-    return read_totals(queue, count.totals);
+    launch_items(queue, Kernel::blocks_count, room.blocks, longest_alone(queue.device()), count.counters,
+                 count.blocks, report);
+    count.sums = enqueue_block_sums(queue, count.blocks, report);
+    return count;
 }
 
 /// Puts lists in order that are cut into pieces: these first, then runs of two, four, ….
@@ -81,60 +111,81 @@ void sort_pieces(Queue& queue, const ScatteredCount& count, const Buffer<std::ui
 
 }  // namespace
 
-std::optional<ScatteredCount> count_scattered(Queue& queue, const WorldGeometry& geometry,
-                                              ::SetkaGridHeader& header, const GridLimits& limits,
-                                              std::uint64_t& held_bytes) {
+void ScatteredCount::learn(const BlockTotals& totals) noexcept {
+    cells = totals.cells;
+    rows = totals.rows;
+    longest_list = totals.longest_list;
+    pieces = totals.pieces;
+}
+
+ScatteredCount start_count(Queue& queue, const StartedTransform& transform, const GridOptions& options,
+                           const GridLimits& limits) {
+    const Device& device = queue.device();
+    const WorldGeometry& geometry = transform.geometry;
+    const std::uint32_t n = geometry.triangle_count;
+    const CountRoom room = usual_room(n, options);
+    if (!device.impl()->has_doubles() || queue.stop_token().stop_possible() || room.blocks == 0 ||
+        !limits.fits_an_allocation(room.counters) ||
+        !limits.fits(geometry.triangles.size_bytes() + count_bytes(device, n, room))) {
+        ScatteredCount nothing;
+        nothing.report = transform.report;
+        return nothing;
+    }
+    launch_items(queue, Kernel::grid_resolve, 1, room.blocks, options.density, options.max_cells_per_axis, n,
+                 geometry.instance_count, transform.report);
+    return enqueue_count(queue, geometry, transform.report, room, most_entries);
+}
+
+std::optional<ScatteredCount> finish_count(Queue& queue, const WorldGeometry& geometry, ::SetkaGridHeader& header,
+                                           const GridLimits& limits, ScatteredCount started, const Report& words,
+                                           std::uint64_t& held_bytes) {
+    const Device& device = queue.device();
+    const std::uint32_t n = header.triangle_count;
     const std::uint64_t world = geometry.triangles.size_bytes();
-    ScatteredCount count;
-    count.row_capacity = usual_rows(header);
-    if (!limits.fits(world + scattered_count_bytes(queue.device(), header, count.row_capacity))) return {};
-    held_bytes = scattered_count_bytes(queue.device(), header, count.row_capacity);
-    count.totals = make_totals(queue);
-    count.blocks = queue.make_buffer<std::uint32_t>(block_count(header) * block_words, "blocks");
-    count.reaches =
-        queue.make_buffer<std::uint32_t>(header.triangle_count * reach_words, "cells of small triangles");
-    BlockTotals totals = count_all(queue, geometry, header, count);
+    const auto fits = [&](std::uint32_t rows) {
+        return limits.fits(world + count_bytes(device, n, room_of(header, rows)));
+    };
+    ScatteredCount count = std::move(started);
+    BlockTotals totals = totals_of(words);
+    const auto count_again = [&](std::uint32_t rows) {
+        const Buffer<std::uint32_t> report = std::exchange(count, {}).report;
+        const CountRoom room = room_of(header, rows);
+        held_bytes = std::max(held_bytes, count_bytes(device, n, room));
+        report_header(queue, report, header);
+        count = enqueue_count(queue, geometry, report, room, rows_a_launch(device, header.dims));
+        totals = totals_of(read_report(queue, report));
+    };
+    if (count.room.blocks != 0) held_bytes = count_bytes(device, n, count.room);
+    if (count.room.blocks < block_count(header) || !has_header(words, header)) {
+        if (!fits(usual_rows(n))) return {};
+        count_again(usual_rows(n));
+    }
     const auto is_hopeless = [&] {
         return totals.rows >= SK_MOST_ROWS || totals.long_rows >= SK_MOST_LONG_ROWS ||
-               totals.rows * row_words * word > queue.device().info().max_allocation_bytes ||
-               (queue.device().options().primitives == PrimitiveShape::Serial &&
+               totals.rows * row_words * word > device.info().max_allocation_bytes ||
+               (device.options().primitives == PrimitiveShape::Serial &&
                 totals.longest_list / SK_PIECE > most_pieces) ||
-               !limits.fits(world + scattered_count_bytes(queue.device(), header,
-                                                          std::max(totals.rows, count.row_capacity)));
+               !fits(std::max(totals.rows, usual_rows(n)));
     };
     if (is_hopeless()) return {};
-    if (totals.rows > count.row_capacity) {
-        count.row_capacity = totals.rows;
-        held_bytes = scattered_count_bytes(queue.device(), header, count.row_capacity);
-        count.row_list = {};
-        count.counters = {};
-        count.sums = {};
-        totals = count_all(queue, geometry, header, count);
-    }
+    if (totals.rows > count.room.rows) count_again(totals.rows);
     if (totals.pairs > most_entries)
         limits.refuse_count((totals.found_long_rows < SK_MOST_LONG_ROWS ? "" : "at least ") +
                             std::to_string(totals.pairs) + " pairs (triangle, cell)");
     header.reference_count = static_cast<std::uint32_t>(totals.pairs);
-    count.cells = totals.cells;
-    count.rows = totals.rows;
-    count.longest_list = totals.longest_list;
-    count.pieces = totals.pieces;
+    count.learn(totals);
+    if (count.room.blocks > block_count(header) && !limits.fits(world + scattered_bytes(device, header, count))) {
+        count_again(count.room.rows);  // without the blocks that there are not
+        count.learn(totals);
+    }
     return count;
-}
-
-std::uint64_t scattered_count_bytes(const Device& device, const ::SetkaGridHeader& header,
-                                    std::uint32_t row_capacity) {
-    const std::uint32_t blocks = block_count(header);
-    return (SK_TOTALS + counter_count(header.dims) + blocks * block_words + header.triangle_count * reach_words +
-            row_capacity * row_words) *
-               word +
-           block_sums_bytes(device, blocks);
 }
 
 std::uint64_t scattered_bytes(const Device& device, const ::SetkaGridHeader& header,
                               const ScatteredCount& count) {
-    return scattered_count_bytes(device, header, count.row_capacity) +
-           (count.cells * cell_words + header.reference_count + count.pieces * (piece_words + 2 * SK_PIECE)) *
+    return count_bytes(device, header.triangle_count, count.room) +
+           (block_count(header) * block_words + count.cells * cell_words + header.reference_count +
+            count.pieces * (piece_words + 2 * SK_PIECE)) *
                word;
 }
 
@@ -145,21 +196,21 @@ CompactTables build_scattered(Queue& queue, const WorldGeometry& geometry, const
     tables.cells = queue.make_buffer<std::uint32_t>(count.cells * cell_words, "cells");
     enqueue_block_starts(queue, count.sums, count.blocks);
     const std::uint32_t alone = longest_alone(queue.device());
+    tables.blocks = queue.make_buffer<std::uint32_t>(block_count(header) * block_words, "blocks");
     const auto pieces = queue.make_buffer<std::uint32_t>(count.pieces * piece_words, "pieces of lists");
     launch_items(queue, Kernel::blocks_lay_out, block_count(header), alone, header, count.counters, count.blocks,
-                 tables.cells, pieces, count.totals);
+                 tables.blocks, tables.cells, pieces, count.report);
     queue.impl().begin_stage("place");
     tables.references = queue.make_buffer<std::uint32_t>(header.reference_count, "references");
     launch_range(queue, Kernel::scatter_place, header.triangle_count, triangles_a_launch(queue.device()), header,
                  geometry.triangles, count.counters, count.reaches, tables.references);
-    const std::uint32_t items = std::min(row_items(queue.device(), count.row_capacity), count.rows);
-    launch_range(queue, Kernel::scatter_place_rows, items, rows_a_launch(queue.device(), header) / 16, items,
-                 header, geometry.triangles, count.counters, count.row_capacity, count.row_list, count.totals,
+    const std::uint32_t items = std::min(row_items(queue.device(), count.room.rows), count.rows);
+    launch_range(queue, Kernel::scatter_place_rows, items, rows_a_launch(queue.device(), header.dims) / 16, items,
+                 header, geometry.triangles, count.counters, count.room.rows, count.row_list, count.report,
                  tables.references);
     queue.impl().begin_stage("sort");
     launch_items(queue, Kernel::lists_sort, count.cells, alone, tables.cells, tables.references);
     sort_pieces(queue, count, pieces, tables.references);
-    tables.blocks = std::move(count.blocks);
     tables.longest_list = count.longest_list;
     return tables;
 }

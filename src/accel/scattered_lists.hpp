@@ -6,34 +6,47 @@
 #include <optional>
 
 #include "accel/grid_limits.hpp"
+#include "accel/world_geometry.hpp"
 
 namespace setka {
+
+/// What is provided for before anything is counted.
+struct CountRoom {
+    std::uint32_t rows = 0;  ///< of large triangles
+    std::uint32_t blocks = 0;
+    std::uint64_t counters = 0;  ///< words, with the blocks' marks
+};
 
 /// What counting leaves for placing.
 struct ScatteredCount {
     std::uint32_t cells = 0;  ///< that are not empty
     std::uint32_t rows = 0;   ///< of large triangles
-    std::uint32_t row_capacity = 0;
     std::uint32_t longest_list = 0;
     std::uint32_t pieces = 0;  ///< of long lists
-    Buffer<std::uint32_t> totals;
-    Buffer<std::uint32_t> counters;   ///< 64 a block
-    Buffer<std::uint32_t> reaches;    ///< 4 words a triangle
-    Buffer<std::uint32_t> row_list;   ///< 2 words a row
-    Buffer<std::uint32_t> blocks;
+    CountRoom room;
+    Buffer<std::uint32_t> report;
+    Buffer<std::uint32_t> counters;  ///< 64 a block
+    Buffer<std::uint32_t> reaches;   ///< 4 words a triangle
+    Buffer<std::uint32_t> row_list;  ///< 2 words a row
+    Buffer<std::uint32_t> blocks;    ///< counted ones; a grid's own are made of them
     Buffer<std::uint64_t> sums;
+
+    void learn(const BlockTotals& totals) noexcept;
 };
 
-/// Counts pairs; the header learns their number. Waits. Nothing if this is no way to the grid: if large triangles have too many
-/// rows to be listed. `held_bytes` becomes the most bytes that it held.
-[[nodiscard]] std::optional<ScatteredCount> count_scattered(Queue& queue, const WorldGeometry& geometry,
-                                                            ::SetkaGridHeader& header,
-                                                            const GridLimits& limits,
-                                                            std::uint64_t& held_bytes);
+/// Enqueues the resolution and the count on the device, with room for as many blocks as scenes usually need. Has no room, and counts
+/// nothing, if that would not fit, if the device cannot tell the resolution, or if each launch is waited for anyway.
+[[nodiscard]] ScatteredCount start_count(Queue& queue, const StartedTransform& transform, const GridOptions& options,
+                                         const GridLimits& limits);
 
-/// The most bytes that count_scattered() holds, if large triangles have up to so many rows, world triangles not included.
-[[nodiscard]] std::uint64_t scattered_count_bytes(const Device& device, const ::SetkaGridHeader& header,
-                                                  std::uint32_t row_capacity);
+/// Finds out how many pairs there are, which the header learns. Waits, unless what was started has counted in this very grid, as
+/// `words` of the report say. Nothing if this is no way to the grid: if large triangles have too many rows to be listed. `held_bytes` becomes
+/// the most bytes that counting held, world triangles not included.
+[[nodiscard]] std::optional<ScatteredCount> finish_count(Queue& queue, const WorldGeometry& geometry,
+                                                         ::SetkaGridHeader& header, const GridLimits& limits,
+                                                         ScatteredCount started, const Report& words,
+                                                         std::uint64_t& held_bytes);
+
 /// The bytes that build_scattered() holds, tables included, world triangles not.
 [[nodiscard]] std::uint64_t scattered_bytes(const Device& device, const ::SetkaGridHeader& header,
                                             const ScatteredCount& count);

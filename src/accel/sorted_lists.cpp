@@ -33,7 +33,7 @@ std::uint64_t count_bytes(Queue& queue, std::uint64_t triangles, std::uint64_t r
 /// The bytes that finding out which cells are not empty holds.
 std::uint64_t mark_bytes(const Device& device, const ::SetkaGridHeader& header) {
     const std::uint32_t blocks = block_count(header);
-    return (SK_TOTALS + counter_count(header.dims) + blocks * block_words) * word + block_sums_bytes(device, blocks);
+    return (SK_REPORT + counter_count(header.dims) + blocks * block_words) * word + block_sums_bytes(device, blocks);
 }
 
 void count_rows(Queue& queue, const WorldGeometry& geometry, const ::SetkaGridHeader& header,
@@ -57,7 +57,7 @@ void count_pairs(Queue& queue, const WorldGeometry& geometry, ::SetkaGridHeader&
     const auto counts = queue.make_buffer<std::uint32_t>(r, "cells a row");
     const auto long_rows = queue.make_buffer<std::uint32_t>(1, "columns of long rows");
     queue.impl().fill(*long_rows.memory(), 0, long_rows.size_bytes());
-    launch_range(queue, Kernel::grid_count, r, rows_a_launch(queue.device(), header), header,
+    launch_range(queue, Kernel::grid_count, r, rows_a_launch(queue.device(), header.dims), header,
                  geometry.triangles, count.row_triangles, count.row_starts, counts, long_rows);
     const std::uint64_t pairs = total_of(queue, enqueue_exclusive_scan(queue, counts, r, count.row_offsets));
     if (pairs > most_entries) {
@@ -71,15 +71,16 @@ void count_pairs(Queue& queue, const WorldGeometry& geometry, ::SetkaGridHeader&
 void count_cells(Queue& queue, const WorldGeometry& geometry, const ::SetkaGridHeader& header,
                  SortedCount& count) {
     const std::uint32_t n = block_count(header);
-    const auto counters = make_counters(queue, header);
+    const auto counters = make_counters(queue, counter_count(header.dims));
     launch_range(queue, Kernel::grid_mark, static_cast<std::uint32_t>(count.rows),
-                 rows_a_launch(queue.device(), header), header, geometry.triangles, count.row_triangles,
+                 rows_a_launch(queue.device(), header.dims), header, geometry.triangles, count.row_triangles,
                  count.row_starts, counters);
     const auto blocks = queue.make_buffer<std::uint32_t>(n * block_words, "blocks");
-    const auto totals = make_totals(queue);
-    launch_items(queue, Kernel::blocks_count, n, ~0u, header, counters, blocks, totals);
-    const auto sums = enqueue_block_sums(queue, blocks, totals);
-    count.cells = read_totals(queue, totals).cells;
+    const auto report = make_report(queue);
+    report_header(queue, report, header);
+    launch_items(queue, Kernel::blocks_count, n, ~0u, counters, blocks, report);
+    const auto sums = enqueue_block_sums(queue, blocks, report);
+    count.cells = totals_of(read_report(queue, report)).cells;
 }
 
 }  // namespace
@@ -115,7 +116,7 @@ GridTables build_sorted(Queue& queue, const WorldGeometry& geometry, const ::Set
     auto cells = queue.make_buffer<std::uint32_t>(pair_count, "pair cells");
     auto references = queue.make_buffer<std::uint32_t>(pair_count, "references");
     launch_range(queue, Kernel::grid_emit, static_cast<std::uint32_t>(count.rows),
-                 rows_a_launch(queue.device(), header), header, geometry.triangles, count.row_triangles,
+                 rows_a_launch(queue.device(), header.dims), header, geometry.triangles, count.row_triangles,
                  count.row_starts, count.row_offsets, cells, references);
     count = {};
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
+// The dialect's translation for the host comes before every file in it.
+#include "device/host_platform.h"
+// The dialect.
+#include "device/grid/resolution.h"
+
 #include "accel/world_geometry.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "core/launch.hpp"
@@ -27,45 +30,43 @@ struct TransformLayout {
     }
 };
 
-/// The inverse of sk_ordered in device/grid/build.h.
-float float_of_ordered(std::uint32_t ordered) noexcept {
-    return std::bit_cast<float>((ordered & 0x80000000u) ? ordered & 0x7fffffffu : ~ordered);
-}
-
 }  // namespace
 
-WorldGeometry transform_scene(Queue& queue, const DeviceScene& scene) {
+StartedTransform start_transform(Queue& queue, const DeviceScene& scene) {
     scene.check_committed();
-    WorldGeometry geometry;
+    StartedTransform started;
+    WorldGeometry& geometry = started.geometry;
     geometry.triangle_count = scene.triangle_count();
     geometry.instance_count = scene.instance_count();
     geometry.instances = scene.instances();
     geometry.instance_starts = scene.instance_starts();
     geometry.common_mask = scene.common_mask();
-
     queue.impl().begin_stage("transform");
     geometry.triangles = queue.make_buffer<float>(std::size_t(geometry.triangle_count) * 9, "world triangles");
-    constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
-    const auto world = queue.make_buffer<std::uint32_t>(transform_scratch_bytes / sizeof(none), "bounds");
-    queue.impl().fill(*world.memory(), none, world.size_bytes());
+    started.report = make_report(queue);
     const TransformLayout layout(queue.device(), geometry.triangle_count);
     launch_groups(queue, Kernel::grid_transform, layout.groups, layout.group_size, geometry.triangle_count,
                   layout.elements, geometry.instance_count, scene.positions(), scene.indices(), scene.instances(),
-                  scene.instance_starts(), geometry.triangles, world);
-    const std::vector<std::uint32_t> words = queue.download(world);
-    for (int axis = 0; axis < 3; ++axis) {
-        geometry.bounds.lower[axis] = float_of_ordered(words[1 + axis]);
-        geometry.bounds.upper[axis] = float_of_ordered(~words[4 + axis]);
-    }
-    if (const std::uint32_t bad = words.front(); bad != none)
+                  scene.instance_starts(), geometry.triangles, started.report);
+    return started;
+}
+
+void take_bounds(const Report& report, WorldGeometry& geometry) {
+    geometry.bounds = sk_reported_bounds(report.data());
+    if (const std::uint32_t bad = report[SK_REPORT_BAD]; bad != 0)
         throw Error(ErrorCategory::InvalidData,
-                    "scene triangle " + std::to_string(bad) +
+                    "scene triangle " + std::to_string(~bad) +
                         " has a vertex that is not finite after its instance's transform; finite vertices are needed");
     constexpr float largest = 1e20f;
     if (!(extent_of(geometry.bounds) <= largest))
         throw Error(ErrorCategory::InvalidData, "the scene's extent is " + std::to_string(extent_of(geometry.bounds)) +
                                                     "; up to 1e20 can be calculated with in float");
-    return geometry;
+}
+
+WorldGeometry transform_scene(Queue& queue, const DeviceScene& scene) {
+    StartedTransform started = start_transform(queue, scene);
+    take_bounds(read_report(queue, started.report), started.geometry);
+    return std::move(started.geometry);
 }
 
 namespace {
@@ -78,10 +79,7 @@ float unit_of(float extent) noexcept {
 
 }  // namespace
 
-float extent_of(const Bounds& bounds) noexcept {
-    return std::max({bounds.upper[0] - bounds.lower[0], bounds.upper[1] - bounds.lower[1],
-                     bounds.upper[2] - bounds.lower[2]});
-}
+float extent_of(const Bounds& bounds) noexcept { return sk_extent_of(bounds); }
 
 sk_trace_params trace_params(const WorldGeometry& geometry, std::uint32_t mask) noexcept {
     sk_trace_params params{};

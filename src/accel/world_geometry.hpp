@@ -2,17 +2,24 @@
 /// Where are the scene's triangles in the world? The first stages of every build: transform and bounds.
 #pragma once
 
+#include "accel/compact_tables.hpp"
 #include "device/trace/params.h"
 #include "setka/structure.hpp"
 
 namespace setka {
 
-/// Transforms every triangle and finds their bounds; waits. Throws InvalidData that names the first triangle that is not
-/// finite in world space, or a scene too large to calculate with (an extent above 1e20).
+/// Triangles on their way into the world. Their bounds will be in the report, the geometry does not have them yet.
+struct StartedTransform {
+    WorldGeometry geometry;
+    Buffer<std::uint32_t> report;
+};
+/// Enqueues the transform of every triangle.
+[[nodiscard]] StartedTransform start_transform(Queue& queue, const DeviceScene& scene);
+/// Takes the bounds from what was reported. Throws InvalidData that names the first triangle that is not finite in world space, or
+/// a scene too large to calculate with (an extent above 1e20).
+void take_bounds(const Report& report, WorldGeometry& geometry);
+/// Both; waits.
 [[nodiscard]] WorldGeometry transform_scene(Queue& queue, const DeviceScene& scene);
-
-/// What transform_scene() holds besides meanwhile.
-inline constexpr std::uint64_t transform_scratch_bytes = 7 * sizeof(std::uint32_t);
 
 /// The longest side of the bounds, in float.
 [[nodiscard]] float extent_of(const Bounds& bounds) noexcept;

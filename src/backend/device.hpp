@@ -100,6 +100,9 @@ class Device : public std::enable_shared_from_this<Device> {
     /// SK_TEAM of its kernels: the size of the groups in which team kernels run, or 1 if they may have any.
     [[nodiscard]] virtual std::uint32_t team_size() const noexcept { return 1; }
 
+    /// SK_DOUBLE of its kernels: whether they know doubles.
+    [[nodiscard]] virtual bool has_doubles() const noexcept { return false; }
+
     /// What the probe found; set once, before the device is handed out.
     [[nodiscard]] const ParityReport& parity() const noexcept { return parity_; }
     void set_parity(ParityReport report) {

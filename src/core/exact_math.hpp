@@ -11,28 +11,10 @@ namespace setka::exact {
 inline constexpr double pi = 3.14159265358979323846;
 
 /// x to a small power by repeated multiplication.
-[[nodiscard]] constexpr double power(double x, unsigned exponent) noexcept {
-    double result = 1;
-    for (; exponent; exponent >>= 1, x *= x)
-        if (exponent & 1) result *= x;
-    return result;
-}
+[[nodiscard]] double power(double x, unsigned exponent) noexcept;
 
-/// The n-th root of x >= 0 for a small n, by Newton's method from above: the iterates fall until rounding stops them.
-[[nodiscard]] inline double root(double x, unsigned n) noexcept {
-    if (!(x > 0)) return 0;
-    // A power of two at or above the root: frexp and ldexp are exact.
-    int exponent = 0;
-    (void)std::frexp(x, &exponent);
-    const int count = static_cast<int>(n);
-    double y = std::ldexp(1.0, exponent >= 0 ? exponent / count + 1 : -((-exponent) / count) + 1);
-    for (int i = 0; i < 200; ++i) {
-        const double next = y - (y - x / power(y, n - 1)) / n;
-        if (!(next < y)) break;
-        y = next;
-    }
-    return y;
-}
+/// The n-th root of x >= 0 for a small n: what kernels compute (device/root.h).
+[[nodiscard]] double root(double x, unsigned n) noexcept;
 
 [[nodiscard]] inline double cbrt(double x) noexcept { return x < 0 ? -root(-x, 3) : root(x, 3); }
 

@@ -9,7 +9,7 @@
     X(probe_rounding) X(probe_layout) X(probe_barrier)                                                     \
     X(scan_reduce) X(scan_spine) X(scan_apply)                                                             \
     X(sort_count) X(sort_scatter)                                                                          \
-    X(grid_transform) X(grid_rows) X(grid_row_list) X(grid_count) X(grid_emit)                             \
+    X(grid_transform) X(grid_resolve) X(grid_rows) X(grid_row_list) X(grid_count) X(grid_emit)             \
     X(grid_cells_clear) X(grid_cells_mark) X(grid_cells_close) X(grid_cells_search)                        \
     X(grid_mark)                                                                                           \
     X(blocks_reduce) X(blocks_spine) X(blocks_apply) X(blocks_count) X(blocks_lay_out)                     \

@@ -14,10 +14,13 @@
  *   SK_WIDTH                 how many rays a work-item traces side by side: 1 where work-items run in step, 8 on CPUs whose drivers
  *                            compile vectors well
  *   SK_TEAM                  how many work-items run in step: 1, or a power of two up to 64 (an integer for #if)
+ *   SK_DOUBLE                whether there is `double`, of which + - * / and conversions are correctly rounded too: only what the host does
+ *                            again and compares may depend on it (an integer for #if)
  *   SK_BARRIER()             all work-items of the group; orders local memory; in uniform control flow only
  *   sk_u32 sk_i32 sk_u64     integers
  *   sk_global_id() sk_local_id() sk_group_id() sk_local_size()   as sk_u32
  *   sk_float_bits(f) sk_bits_float(u)                            bit casts
+ *   sk_double_bits(d) sk_bits_double(u)                          the same of sk_u64, where SK_DOUBLE
  *   sk_sqrt(f) sk_floor(f)                                       correctly rounded
  *   sk_popcount(u)                                               how many bits of a sk_u32 are set
  *   sk_atomic_min(p, v) sk_atomic_max(p, v) sk_atomic_add(p, v)  on sk_u32 in global or local memory, return what was there;
@@ -33,14 +36,14 @@
  *   sk_lanes_or(i)                                               of all lanes
  *   sk_shuffle(v, w, i, …)                                       elements of v and w, which are numbered on
  *
- * Not allowed: fma, mad, min, max, clamp, rsqrt, dot, cross, normalize, pow, exp, log, sin, float3, doubles, sub-groups,
+ * Not allowed: fma, mad, min, max, clamp, rsqrt, dot, cross, normalize, pow, exp, log, sin, float3, doubles without SK_DOUBLE, sub-groups,
  * float atomics, recursion, `return` before a barrier, a float to integer cast of a value that was not range-checked.
  */
 #ifndef SETKA_DEVICE_DIALECT_H
 #define SETKA_DEVICE_DIALECT_H
 
 #if !defined(SK_KERNEL) || !defined(SK_TEAM_KERNEL) || !defined(SK_TEAM) || !defined(SK_FUNCTION) || !defined(SK_GLOBAL) || !defined(SK_LOCAL) || \
-    !defined(SK_LOCAL_STORAGE) || !defined(SK_RESTRICT) || !defined(SK_BARRIER) || !defined(SK_WIDTH) || !defined(SK_ALIGNED)
+    !defined(SK_LOCAL_STORAGE) || !defined(SK_RESTRICT) || !defined(SK_BARRIER) || !defined(SK_WIDTH) || !defined(SK_DOUBLE) || !defined(SK_ALIGNED)
 #error "include a platform.h before dialect.h"
 #endif
 

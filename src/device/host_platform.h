@@ -33,6 +33,7 @@ static_assert(FLT_EVAL_METHOD == 0, "float expressions must be rounded to float 
 #define SK_WIDTH 1u
 #endif
 #define SK_TEAM 1
+#define SK_DOUBLE 1
 
 typedef std::uint32_t sk_u32;
 typedef std::int32_t sk_i32;
@@ -46,6 +47,8 @@ inline thread_local sk_u32 sk_host_group = 0;
 #define sk_local_size() (sk_u32{1})
 #define sk_float_bits(f) (std::bit_cast<sk_u32>(f))
 #define sk_bits_float(u) (std::bit_cast<float>(u))
+#define sk_double_bits(d) (std::bit_cast<sk_u64>(d))
+#define sk_bits_double(u) (std::bit_cast<double>(u))
 #define sk_popcount(u) (static_cast<sk_u32>(std::popcount(sk_u32{u})))
 #define sk_sqrt(f) (std::sqrt(f))
 #define sk_floor(f) (std::floor(f))

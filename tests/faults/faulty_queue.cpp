@@ -85,7 +85,10 @@ void FaultyQueue::launch(setka::Kernel kernel, std::uint32_t group_count, std::u
     fail_if_due(Step::Launch, to_string(kernel));
     is_idle_ = false;
     ++launches_;
-    real_->launch(kernel, group_count, group_size, arguments);
+    if (replaced_ && replaced_->first == kernel)
+        replaced_->second(*real_, group_count, group_size, arguments);
+    else
+        real_->launch(kernel, group_count, group_size, arguments);
 }
 
 void FaultyQueue::write(Memory& target, std::uint64_t at, const void* source, std::uint64_t size_bytes) {
@@ -98,6 +101,7 @@ void FaultyQueue::read(Memory& source, void* target, std::uint64_t size_bytes) {
     fail_if_due(Step::Read, source.name());
     real_->read(source, target, size_bytes);
     is_idle_ = true;
+    ++waits_;
 }
 
 void FaultyQueue::copy(Memory& source, std::uint64_t source_at, Memory& target, std::uint64_t target_at,
@@ -114,6 +118,7 @@ void FaultyQueue::fill(Memory& target, std::uint32_t pattern, std::uint64_t size
 void FaultyQueue::finish() {
     real_->finish();
     is_idle_ = true;
+    ++waits_;
 }
 
 void FaultyQueue::library_scan(Memory& counts, Memory& offsets, Memory& total, Memory& scratch,

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "backend/device.hpp"
 
@@ -35,14 +36,23 @@ class FaultyQueue final : public setka::backend::Queue {
     void fail(Step step, std::uint32_t number, Persistence persistence = Persistence::Once);
     /// Calls `action` just before the number-th `step` from here on, which then goes on.
     void before(Step step, std::uint32_t number, std::function<void()> action);
+    /// From here on, calls `action` with the real queue instead of launching this kernel.
+    using Launch = std::function<void(setka::backend::Queue& real, std::uint32_t group_count, std::uint32_t group_size,
+                                      const setka::Arguments& arguments)>;
+    void instead_of(setka::Kernel kernel, Launch action) { replaced_ = {kernel, std::move(action)}; }
     /// Nothing fails and nothing is called any more.
-    void heal() { fault_.reset(); }
+    void heal() {
+        fault_.reset();
+        replaced_.reset();
+    }
     /// Whether the step that was to fail, or before which something was to be called, has come.
     [[nodiscard]] bool has_failed() const { return has_failed_; }
     /// The name of the buffer, or of the kernel, whose step failed last.
     [[nodiscard]] const std::string& failed_name() const { return failed_name_; }
     /// Kernels that were launched since the last fail() or before().
     [[nodiscard]] std::uint32_t launches() const { return launches_; }
+    /// How often the host waited for the device so far: by a transfer to the host or without one.
+    [[nodiscard]] std::uint32_t waits() const { return waits_; }
     /// Bytes that went from the host to the device so far.
     [[nodiscard]] std::uint64_t written_bytes() const { return written_bytes_; }
     /// Whether every kernel that was launched has been waited for.
@@ -95,6 +105,8 @@ class FaultyQueue final : public setka::backend::Queue {
     bool has_failed_ = false;
     bool is_idle_ = true;
     std::uint32_t launches_ = 0;
+    std::uint32_t waits_ = 0;
+    std::optional<std::pair<setka::Kernel, Launch>> replaced_;
     std::uint64_t written_bytes_ = 0;
     std::string failed_name_;
 };

@@ -85,8 +85,8 @@ TEST_P(Totals, OfPairsBeyond31And32Bits) {
         EXPECT_THAT(refusal(lines(instances, false), {.max_cells_per_axis = 4096}),
                     ::testing::HasSubstr("needs " + std::to_string(pairs) +
                                          " pairs (triangle, cell); tables hold up to 2147483647"));
-        // World, rows and counts: nothing of the size of pairs or cells.
-        EXPECT_LT(peak_bytes_, std::uint64_t(instances) * mesh_lines * 80);
+        // World, rows, counts and the blocks that a scene of so many triangles usually has: nothing of the size of pairs.
+        EXPECT_LT(peak_bytes_, std::uint64_t(instances) * mesh_lines * 120);
     }
 }
 
@@ -96,7 +96,7 @@ TEST_P(Totals, OfRowsBeyond31And32Bits) {
         EXPECT_THAT(refusal(lines(instances, true), {.max_cells_per_axis = 4096}),
                     ::testing::HasSubstr("needs " + std::to_string(rows) +
                                          " rows of cells; tables hold up to 2147483647"));
-        EXPECT_LT(peak_bytes_, std::uint64_t(instances) * mesh_lines * 80);
+        EXPECT_LT(peak_bytes_, std::uint64_t(instances) * mesh_lines * 120);
     }
 }
 

@@ -41,6 +41,14 @@ Work building(const std::string& name, setka::CellTables tables) {
             }};
 }
 
+/// Of a sheet, whose cells are one thick but whose blocks are not: counted again when the host has seen the bounds.
+Work building_flat(const std::string& name) {
+    return {name, [](Queue& queue, const World&) {
+                const setka::DeviceScene sheet(queue, support::sheet(16));
+                return grid_bytes(queue, setka::make_grid_builder({.density = 16})->build(queue, sheet));
+            }};
+}
+
 Work rendering(const std::string& name, setka::View view) {
     return {name,
             [view](Queue& queue, const World& world) {
@@ -170,6 +178,7 @@ const std::vector<Work>& all_work() {
                  .get();
          }},
         building("build_scatter", setka::CellTables::Scatter),
+        building_flat("build_flat"),
         building("build_run_boundaries", setka::CellTables::RunBoundaries),
         building("build_binary_search", setka::CellTables::BinarySearch),
         {"brute_force",

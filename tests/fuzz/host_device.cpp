@@ -151,6 +151,7 @@ class HostDevice final : public setka::backend::Device {
     const setka::DeviceInfo& info() const noexcept override { return info_; }
     const setka::DeviceOptions& options() const noexcept override { return options_; }
     std::uint32_t width() const noexcept override { return SK_WIDTH; }
+    bool has_doubles() const noexcept override { return SK_DOUBLE != 0; }
     std::shared_ptr<setka::backend::Queue> make_queue() override {
         return std::make_shared<HostQueue>(shared_from_this());
     }

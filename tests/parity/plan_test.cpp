@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <optional>
+#include <stop_token>
 
 #include "setka/setka.hpp"
 #include "support/devices.hpp"
@@ -60,32 +62,53 @@ TEST_P(Plan, IsExact) {
     }
 }
 
-/// A budget of exactly the peak suffices, and one byte less is refused by plan() already.
-TEST_P(Plan, IsEnoughAndNotTooMuch) {
-    const setka::Scene scene = make(other());
+/// The peak of the plan that is made within a budget beside the scene; 0 if there is none, which plan() says. Where a stop can
+/// be requested, nothing is allocated before its size is known.
+std::uint64_t peak_within(const std::string& device, const setka::Scene& scene, std::uint64_t bytes,
+                          const std::stop_token& token = {}) {
     const setka::GridOptions options{.density = 64};
-    std::uint64_t need = 0;
+    std::uint64_t scene_bytes = 0;
     {
-        setka::Queue queue = device().make_queue();
+        setka::Queue queue = support::open_once(device).make_queue();
+        const std::uint64_t before = queue.device().memory_in_use_bytes();
         const setka::DeviceScene device_scene(queue, scene);
-        need = device().memory_in_use_bytes();
-        need += setka::make_grid_builder(options)->plan(queue, device_scene).peak_bytes();
+        scene_bytes = queue.device().memory_in_use_bytes() - before;
     }
-    const auto build = [&](std::uint64_t budget_bytes) {
-        const Device limited = Device::open(std::get<0>(GetParam()), {.memory_budget_bytes = budget_bytes});
-        setka::Queue queue = limited.make_queue();
-        const setka::DeviceScene device_scene(queue, scene);
-        const auto builder = setka::make_grid_builder(options);
-        setka::GridPlan plan = builder->plan(queue, device_scene);
-        return builder->build(queue, std::move(plan)).header().reference_count;
-    };
-    EXPECT_GT(build(need), 0u);
+    const Device limited = Device::open(device, {.memory_budget_bytes = scene_bytes + bytes});
+    setka::Queue queue = limited.make_queue();
+    const setka::DeviceScene device_scene(queue, scene);
+    queue.set_stop_token(token);
+    const auto builder = setka::make_grid_builder(options);
+    std::optional<setka::GridPlan> plan;
     try {
-        (void)build(need - 1);
-        FAIL() << "nothing was thrown";
+        plan = builder->plan(queue, device_scene);
     } catch (const Error& error) {
         EXPECT_EQ(error.category(), ErrorCategory::OutOfMemory) << error.what();
+        return 0;
     }
+    const std::uint64_t peak_bytes = plan->peak_bytes();
+    EXPECT_GT(builder->build(queue, std::move(*plan)).header().reference_count, 0u);
+    return peak_bytes;
+}
+
+/// A budget of exactly the peak suffices. With one byte less there is no room for blocks that there might be; with one byte
+/// less than is needed where every size is known, the build is refused by plan() already.
+TEST_P(Plan, IsEnoughAndNotTooMuch) {
+    const setka::Scene scene = make(other());
+    const std::string& device = std::get<0>(GetParam());
+    constexpr std::uint64_t plenty = std::uint64_t{1} << 30;
+    const std::stop_source stop;
+    const std::uint64_t least_bytes = peak_within(device, scene, plenty, stop.get_token());
+    std::uint64_t peak_bytes = peak_within(device, scene, plenty);
+    EXPECT_GE(peak_bytes, least_bytes);
+    for (std::uint32_t smaller = 0; peak_bytes > least_bytes; ++smaller) {
+        ASSERT_LT(smaller, 3u) << "each with another peak";
+        EXPECT_EQ(peak_within(device, scene, peak_bytes), peak_bytes);
+        peak_bytes = peak_within(device, scene, peak_bytes - 1);
+    }
+    EXPECT_EQ(peak_bytes, least_bytes);
+    EXPECT_EQ(peak_within(device, scene, least_bytes), least_bytes);
+    EXPECT_EQ(peak_within(device, scene, least_bytes - 1), 0u);
 }
 
 class GridErrors : public support::DeviceTest {};

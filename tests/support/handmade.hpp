@@ -149,4 +149,20 @@ inline Instance& add(Scene& scene, Mesh mesh, const Material& material, const Ma
     return scene;
 }
 
+/// A flat sheet of 2 n^2 triangles.
+[[nodiscard]] inline Scene sheet(std::uint32_t n) {
+    Mesh mesh;
+    for (std::uint32_t j = 0; j <= n; ++j)
+        for (std::uint32_t i = 0; i <= n; ++i) mesh.positions.push_back({static_cast<float>(i), static_cast<float>(j), 0});
+    for (std::uint32_t j = 0; j < n; ++j)
+        for (std::uint32_t i = 0; i < n; ++i) {
+            const std::uint32_t at = j * (n + 1) + i, above = at + n + 1;
+            mesh.triangles.push_back({at, at + 1, above + 1});
+            mesh.triangles.push_back({at, above + 1, above});
+        }
+    Scene scene;
+    add(scene, std::move(mesh), matte({0.5f, 0.5f, 0.5f}));
+    return scene;
+}
+
 }  // namespace support

@@ -30,6 +30,8 @@ class CudaDevice final : public Device {
     /// As kernels_cu/platform.h says: a warp.
     [[nodiscard]] std::uint32_t team_size() const noexcept override { return 32; }
 
+    [[nodiscard]] bool has_doubles() const noexcept override { return true; }
+
     [[nodiscard]] int number() const noexcept { return number_; }
 
   private:

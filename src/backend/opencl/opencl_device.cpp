@@ -65,7 +65,10 @@ Error opencl_error(const std::string& what, const cl::Error& error) {
 
 OpenClDevice::OpenClDevice(cl::Device device, DeviceInfo info, const DeviceOptions& options)
     : device_(std::move(device)), info_(std::move(info)) {
-    guarded("opening " + info_.id, [&] { context_ = cl::Context(device_); });
+    guarded("opening " + info_.id, [&] {
+        context_ = cl::Context(device_);
+        has_doubles_ = device_.getInfo<CL_DEVICE_EXTENSIONS>().find("cl_khr_fp64") != std::string::npos;
+    });
     build_program();
     options_ = resolve_options(options, info_, capabilities());
 }
@@ -83,6 +86,7 @@ void OpenClDevice::build_program() {
     std::string build_options = "-cl-std=CL1.2";
     if (info_.correctly_rounded_divide_sqrt) build_options += " -cl-fp32-correctly-rounded-divide-sqrt";
     build_options += " -DSK_WIDTH=" + std::to_string(width()) + "u";
+    build_options += " -DSK_DOUBLE=" + std::to_string(int(has_doubles()));
     build_options += " -DSK_TEAM=" + std::to_string(team_size());
     // As for CUDA: walks wait for memory, so that more of them at a time are worth more than registers.
     if (device_.getInfo<CL_DEVICE_EXTENSIONS>().find("cl_nv_compiler_options") != std::string::npos)

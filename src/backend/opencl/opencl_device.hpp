@@ -28,6 +28,8 @@ class OpenClDevice final : public Device {
         return info_.type == DeviceType::Gpu && info_.max_work_group_size >= 32 ? 32 : 1;
     }
 
+    [[nodiscard]] bool has_doubles() const noexcept override { return has_doubles_; }
+
     [[nodiscard]] const cl::Device& device() const noexcept { return device_; }
     [[nodiscard]] const cl::Context& context() const noexcept { return context_; }
     [[nodiscard]] const cl::Program& program() const noexcept { return program_; }
@@ -39,6 +41,7 @@ class OpenClDevice final : public Device {
     cl::Device device_;
     DeviceInfo info_;
     DeviceOptions options_;
+    bool has_doubles_ = false;
     cl::Context context_;
     cl::Program program_;
     PoolList<cl::Buffer> pools_;

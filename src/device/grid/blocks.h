@@ -46,6 +46,13 @@ SK_FUNCTION sk_dims sk_block_dims(sk_dims cells) {
     return r;
 }
 
+SK_FUNCTION sk_u32 sk_block_count(sk_dims blocks) { return blocks.x * blocks.y * blocks.z; }
+
+/** The grid in which is counted; one without triangles and cells where none was made. */
+SK_FUNCTION SetkaGridHeader sk_reported_grid(SK_GLOBAL const sk_u32* report) {
+    return *(SK_GLOBAL const SetkaGridHeader*)(report + SK_REPORT_HEADER);
+}
+
 SK_FUNCTION sk_u32 sk_number_at(sk_dims dims, sk_u32 x, sk_u32 y, sk_u32 z) { return (z * dims.y + y) * dims.x + x; }
 
 /** The block that holds a cell, and the cell's bit in it. */

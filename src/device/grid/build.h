@@ -9,24 +9,19 @@
 
 #include "device/grid/cells.h"
 #include "device/grid/limits.h"
+#include "device/grid/resolution.h"
 #include "device/math.h"
 #include "device/scan.h"
 
-/** Words of a box: three minima and three maxima. */
+/** Words of a box: two corners. */
 #define SK_BOUNDS_VALUES 6u
-
-/** An unsigned integer that orders as the float does, because atomics know no floats; -0 comes just before 0. */
-SK_FUNCTION sk_u32 sk_ordered(float f) {
-    const sk_u32 bits = sk_float_bits(f);
-    return (bits & 0x80000000u) != 0u ? ~bits : bits | 0x80000000u;
-}
 
 /** The box of what a work-item has seen. */
 typedef struct sk_extremes {
     sk_vec3 low, high;
 } sk_extremes;
 
-/** Stage 1: world vertices of triangle i. first_bad becomes the lowest triangle that is not finite. */
+/** Stage 1: world vertices of triangle i. first_bad becomes the complement of the lowest triangle that is not finite. */
 SK_FUNCTION sk_extremes sk_transform_triangle(sk_u32 i, sk_u32 instance_count, SK_GLOBAL const float* positions,
                                               SK_GLOBAL const sk_u32* indices, SK_GLOBAL const SetkaInstance* instances,
                                               SK_GLOBAL const sk_u32* instance_starts, SK_GLOBAL float* triangles,
@@ -47,18 +42,17 @@ SK_FUNCTION sk_extremes sk_transform_triangle(sk_u32 i, sk_u32 instance_count, S
         seen.low = sk_make3(sk_min(seen.low.x, q.x), sk_min(seen.low.y, q.y), sk_min(seen.low.z, q.z));
         seen.high = sk_make3(sk_max(seen.high.x, q.x), sk_max(seen.high.y, q.y), sk_max(seen.high.z, q.z));
     }
-    if (!finite) sk_atomic_min(first_bad, i);
+    if (!finite) sk_atomic_max(first_bad, ~i);
     return seen;
 }
 
 /**
- * Stages 1 and 2: `elements` triangles a work-item, and the box of all. world[0] becomes the lowest triangle that is not finite;
- * world[1 .. 4) the box's lower corner and world[4 .. 7) the complement of its upper one, as integers of the same order: all are minima, from ~0 on.
+ * Stages 1 and 2: `elements` triangles a work-item, and the box of all, in the words of the report (limits.h): all are maxima, from 0 on.
  */
 SK_FUNCTION void sk_grid_transform(SK_LOCAL sk_u32* scratch, sk_u32 n, sk_u32 elements, sk_u32 instance_count,
                                    SK_GLOBAL const float* positions, SK_GLOBAL const sk_u32* indices,
                                    SK_GLOBAL const SetkaInstance* instances, SK_GLOBAL const sk_u32* instance_starts,
-                                   SK_GLOBAL float* triangles, SK_GLOBAL sk_u32* world) {
+                                   SK_GLOBAL float* triangles, SK_GLOBAL sk_u32* report) {
     const sk_u32 item = sk_local_id(), size = sk_local_size();
     const sk_u64 first = (sk_u64)sk_group_id() * size * elements + item;
     const float infinity = sk_bits_float(0x7f800000u);
@@ -69,23 +63,24 @@ SK_FUNCTION void sk_grid_transform(SK_LOCAL sk_u32* scratch, sk_u32 n, sk_u32 el
         const sk_u64 i = first + (sk_u64)k * size;
         if (i < n)
             seen = sk_transform_triangle((sk_u32)i, instance_count, positions, indices, instances, instance_starts,
-                                         triangles, world, seen);
+                                         triangles, report + SK_REPORT_BAD, seen);
     }
-    scratch[item] = sk_ordered(seen.low.x);
-    scratch[SK_MAX_GROUP + item] = sk_ordered(seen.low.y);
-    scratch[2u * SK_MAX_GROUP + item] = sk_ordered(seen.low.z);
-    scratch[3u * SK_MAX_GROUP + item] = ~sk_ordered(seen.high.x);
-    scratch[4u * SK_MAX_GROUP + item] = ~sk_ordered(seen.high.y);
-    scratch[5u * SK_MAX_GROUP + item] = ~sk_ordered(seen.high.z);
+    scratch[item] = ~sk_ordered(seen.low.x);
+    scratch[SK_MAX_GROUP + item] = ~sk_ordered(seen.low.y);
+    scratch[2u * SK_MAX_GROUP + item] = ~sk_ordered(seen.low.z);
+    scratch[3u * SK_MAX_GROUP + item] = sk_ordered(seen.high.x);
+    scratch[4u * SK_MAX_GROUP + item] = sk_ordered(seen.high.y);
+    scratch[5u * SK_MAX_GROUP + item] = sk_ordered(seen.high.z);
     for (sk_u32 others = size / 2u; others > 0u; others /= 2u) {
         SK_BARRIER();
         for (sk_u32 v = 0u; v < SK_BOUNDS_VALUES && item < others; ++v) {
             SK_LOCAL sk_u32* own = scratch + v * SK_MAX_GROUP + item;
-            *own = sk_min_u32(*own, own[others]);
+            *own = sk_max_u32(*own, own[others]);
         }
     }
     SK_BARRIER();
-    for (sk_u32 v = item; v < SK_BOUNDS_VALUES; v += size) sk_atomic_min(world + 1u + v, scratch[v * SK_MAX_GROUP]);
+    for (sk_u32 v = item; v < SK_BOUNDS_VALUES; v += size) 
+        sk_atomic_max(report + SK_REPORT_LOWER + v, scratch[v * SK_MAX_GROUP]);
 }
 
 /** Stage 4, first half: rows of triangle i. */

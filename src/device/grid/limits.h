@@ -26,7 +26,10 @@
 /** Lists longer than this are copied by one work-item a reference, others by one a list. */
 #define SK_LONG_LIST 1024u
 
-/** What a build's kernels tell the host, in one table of SK_TOTALS words. */
+/**
+ * What a build's kernels tell each other and the host, in one table of SK_REPORT words that are 0 at first: totals, what the transform found, and
+ * the header of the grid in which is counted.
+ */
 #define SK_TOTAL_CELLS 0u      /* non-empty cells */
 #define SK_TOTAL_PAIRS_LOW 1u
 #define SK_TOTAL_PAIRS_HIGH 2u
@@ -36,6 +39,11 @@
 #define SK_TOTAL_FOUND 6u      /* the same, of those counted so far */
 #define SK_TOTAL_PIECES 7u     /* of lists that are too long for one work-item */
 #define SK_TOTAL_CUT 8u        /* pieces cut so far */
-#define SK_TOTALS 9u
+#define SK_TOTALS 9u           /* so many words are totals */
+#define SK_REPORT_BAD 9u       /* the complement of the lowest triangle that is not finite, or 0 */
+#define SK_REPORT_LOWER 10u    /* the complements of the bounds' lower corner, as integers of the same order: all are maxima */
+#define SK_REPORT_UPPER 13u    /* the upper corner */
+#define SK_REPORT_HEADER 16u   /* a SetkaGridHeader, or zeros */
+#define SK_REPORT 32u
 
 #endif

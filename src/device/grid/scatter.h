@@ -241,14 +241,24 @@ typedef struct SK_ALIGNED(16) sk_four_counts {
 
 SK_FUNCTION sk_u32 sk_pieces_of(sk_u32 count, sk_u32 alone) { return count > alone ? sk_piece_count(count) : 0u; }
 
-/** Block b from the counters of its cells; `clearance` becomes the number of its pairs. Lists longer than `alone` come in pieces. */
-SK_FUNCTION void sk_count_block(sk_u32 b, sk_u32 alone, SetkaGridHeader grid, SK_GLOBAL const sk_u32* counters,
-                                SK_GLOBAL sk_u32* marks, SK_GLOBAL sk_block* blocks, SK_GLOBAL sk_u32* totals) {
+/** The marks of blocks lie behind the counters of as many blocks as the grid has, wherever the table ends. */
+SK_FUNCTION SK_GLOBAL sk_u32* sk_marks_behind(SK_GLOBAL sk_u32* counters, sk_dims blocks) {
+    return counters + (size_t)sk_block_count(blocks) * SK_BLOCK_CELLS;
+}
+
+/**
+ * Block b from the counters of its cells; `clearance` becomes the number of its pairs. Lists longer than `alone` come in pieces. A block
+ * beyond the grid's last one, for which there is room only because the grid was not known, is empty.
+ */
+SK_FUNCTION void sk_count_block(sk_u32 b, sk_u32 alone, SetkaGridHeader grid, SK_GLOBAL sk_u32* counters,
+                                SK_GLOBAL sk_block* blocks, SK_GLOBAL sk_u32* totals) {
+    const sk_dims dims = sk_block_dims(sk_cell_dims(grid));
+    const sk_u32 rows = b < sk_block_count(dims) ? SK_BLOCK_CELLS / 4u : 0u;
     SK_GLOBAL const sk_four_counts* own = (SK_GLOBAL const sk_four_counts*)(counters + (size_t)b * SK_BLOCK_CELLS);
     sk_u64 pairs = 0u, mask = 0u;
     sk_u32 longest = 0u, pieces = 0u;
     sk_block block;
-    for (sk_u32 row = 0u; row < SK_BLOCK_CELLS / 4u; ++row) {
+    for (sk_u32 row = 0u; row < rows; ++row) {
         const sk_four_counts counts = own[row];
         const sk_u32 most = sk_max_u32(sk_max_u32(counts.a, counts.b), sk_max_u32(counts.c, counts.d));
         const sk_u32 bits = (counts.a != 0u ? 1u : 0u) | (counts.b != 0u ? 2u : 0u) | (counts.c != 0u ? 4u : 0u) |
@@ -265,7 +275,7 @@ SK_FUNCTION void sk_count_block(sk_u32 b, sk_u32 alone, SetkaGridHeader grid, SK
     block.first = 0u;
     block.clearance = pairs >> 32 != 0u ? 0xffffffffu : (sk_u32)pairs;
     blocks[b] = block;
-    if (mask != 0u) sk_mark_block(sk_block_dims(sk_cell_dims(grid)), b, marks);
+    if (mask != 0u) sk_mark_block(dims, b, sk_marks_behind(counters, dims));
     if (longest > sk_min_u32(alone, SK_LONG_LIST)) sk_atomic_max(totals + SK_TOTAL_LONGEST, longest);
     if (pieces != 0u) sk_atomic_add(totals + SK_TOTAL_PIECES, pieces);
 }
@@ -281,13 +291,17 @@ SK_FUNCTION void sk_cut_list(sk_cell_list list, SK_GLOBAL sk_piece* pieces, SK_G
     for (sk_u32 k = 0u; k < count; ++k) pieces[piece.first + k] = piece;
 }
 
-/** The records of block b's cells, after the scan; the counters become the first places of the lists. Empty blocks learn their clearance. */
+/**
+ * The record of block b and those of its cells, from what was counted and scanned; the counters become the first places of the lists. Empty
+ * blocks learn their clearance.
+ */
 SK_FUNCTION void sk_lay_out_block(sk_u32 b, sk_u32 alone, SetkaGridHeader grid, SK_GLOBAL sk_u32* counters,
-                                  SK_GLOBAL const sk_u32* marks, SK_GLOBAL sk_block* blocks,
+                                  SK_GLOBAL const sk_block* counted, SK_GLOBAL sk_block* blocks,
                                   SK_GLOBAL sk_cell_list* cells, SK_GLOBAL sk_piece* pieces,
                                   SK_GLOBAL sk_u32* totals) {
+    const sk_dims dims = sk_block_dims(sk_cell_dims(grid));
     SK_GLOBAL sk_u32* own = counters + (size_t)b * SK_BLOCK_CELLS;
-    sk_block block = blocks[b];
+    sk_block block = counted[b];
     sk_u32 r = block.first;
     sk_cell_list list;
     list.offset = block.clearance;
@@ -301,7 +315,7 @@ SK_FUNCTION void sk_lay_out_block(sk_u32 b, sk_u32 alone, SetkaGridHeader grid, 
         r += 1u;
     }
     block.clearance =
-        sk_mask_of(block) != 0u ? 0u : sk_find_clearance(sk_block_dims(sk_cell_dims(grid)), b, marks);
+        sk_mask_of(block) != 0u ? 0u : sk_find_clearance(dims, b, sk_marks_behind(counters, dims));
     blocks[b] = block;
 }
 
