@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace setka {
@@ -17,6 +18,7 @@ namespace setka {
 namespace backend {  // the seam of the library's inside; opaque to users
 class Device;
 class Memory;
+class PendingRead;
 class Queue;
 }  // namespace backend
 
@@ -87,6 +89,13 @@ struct DeviceOptions {
     ParityRequirement parity = ParityRequirement::Required;
 };
 
+namespace detail {  // of Download
+[[nodiscard]] bool is_ready(backend::PendingRead* read);
+void wait(backend::PendingRead* read);
+/// Throws InvalidArgument unless `is_there`, which is false afterwards.
+void take_once(bool& is_there, const char* what);
+}  // namespace detail
+
 class Queue;
 
 /// A device that was opened: its kernels are compiled, its memory is pooled. Copies share the device.
@@ -150,6 +159,40 @@ struct StageTime {
     std::uint32_t launches = 0;
 };
 
+/// Elements on their way from a buffer to the host: what Queue::download_later() returns. It may outlive the queue and the buffer, and
+/// belongs to the queue's thread as long as there is one. Destroying or replacing one that was not fetched waits for the device to come that far.
+template <typename T>
+class Download {
+  public:
+    Download() = default;  ///< of nothing: get() throws
+    Download(Download&& other) noexcept
+        : elements_(std::move(other.elements_)), read_(std::move(other.read_)), is_there_(std::exchange(other.is_there_, false)) {}
+    Download& operator=(Download&& other) noexcept {
+        read_ = std::move(other.read_);  // first, since the device may still write the elements
+        elements_ = std::move(other.elements_);
+        is_there_ = std::exchange(other.is_there_, false);
+        return *this;
+    }
+    ~Download() = default;
+
+    /// Whether get() would return at once, or throw.
+    [[nodiscard]] bool is_ready() const { return detail::is_ready(read_.get()); }
+    /// Waits for the elements, and gives them away. Errors of asynchronous work surface here. A stop that is requested later than
+    /// download_later() changes nothing. Throws InvalidArgument if it has been called before.
+    [[nodiscard]] std::vector<T> get() {
+        detail::take_once(is_there_, "download");
+        detail::wait(read_.get());
+        read_.reset();
+        return std::move(elements_);
+    }
+
+  private:
+    friend class Queue;
+    std::vector<T> elements_;
+    std::shared_ptr<backend::PendingRead> read_;  ///< into elements_, so it goes before them; none if there is nothing to wait for
+    bool is_there_ = false;
+};
+
 /// One in-order stream of work on a device: what is enqueued later sees what was enqueued earlier. Calls return before the
 /// device is done unless they say otherwise. One queue belongs to one host thread at a time.
 class Queue {
@@ -209,7 +252,19 @@ class Queue {
         return target;
     }
 
-    /// Waits until everything enqueued so far is done. Errors of asynchronous work surface here and in download().
+    /// The elements of `source` as they are when the device has done what was enqueued so far, without waiting: Download::get() does.
+    /// What is enqueued later runs on meanwhile, may write `source`, and does not show in the result; the buffer may be freed as soon as the call
+    /// returns. Throws Cancelled as download() does.
+    template <typename T>
+    [[nodiscard]] Download<T> download_later(const Buffer<T>& source) {
+        Download<T> download;
+        download.elements_.resize(source.size());
+        download.read_ = read_later(source, std::span(download.elements_));
+        download.is_there_ = true;
+        return download;
+    }
+
+    /// Waits until everything enqueued so far is done. Errors of asynchronous work surface here, in download() and in Download::get().
     void finish();
 
     /// Device time by stage since the last call, in order of first use; waits for what was enqueued.
@@ -229,6 +284,13 @@ class Queue {
     Queue(Device device, std::shared_ptr<backend::Queue> impl)
         : device_(std::move(device)), impl_(std::move(impl)) {}
     [[nodiscard]] backend::Queue& impl() const noexcept { return *impl_; }
+    /// Inside the library only: the first elements of `source`. `target` has to stay until the result was waited for or is gone; it is none if
+    /// there is nothing to read.
+    template <typename T>
+    [[nodiscard]] std::shared_ptr<backend::PendingRead> read_later(const Buffer<T>& source, std::span<T> target) {
+        check_fits(0, target.size(), source.size());
+        return read_later(source.memory(), target.data(), target.size_bytes());
+    }
 
   private:
     [[nodiscard]] std::shared_ptr<backend::Memory> allocate(std::size_t size, std::size_t element_bytes,
@@ -237,6 +299,8 @@ class Queue {
                                                              bool read_only, std::string_view name);
     void write(const std::shared_ptr<backend::Memory>& target, std::size_t at, const void* source, std::size_t size_bytes);
     void read(const std::shared_ptr<backend::Memory>& source, void* target, std::size_t size_bytes);
+    [[nodiscard]] std::shared_ptr<backend::PendingRead> read_later(const std::shared_ptr<backend::Memory>& source,
+                                                                   void* target, std::size_t size_bytes);
     void copy_bytes(const std::shared_ptr<backend::Memory>& source, std::size_t source_at,
                     const std::shared_ptr<backend::Memory>& target, std::size_t target_at, std::size_t size_bytes);
     static void check_fits(std::size_t first, std::size_t count, std::size_t capacity);

@@ -48,6 +48,32 @@ struct RenderStatistics {
     double heat_mean = 0;            ///< Steps and Tests: mean over the pixels
 };
 
+/// A picture on its way to the host: what ProgressiveRender::image_later() and Renderer::render_later() return. It may outlive all that it
+/// was made of, and belongs to the queue's thread as long as the queue is there. Destroying or replacing one that was not fetched waits for the
+/// device to come that far.
+class PendingImage {
+  public:
+    PendingImage() noexcept;  ///< of nothing: get() throws
+    ~PendingImage();
+    PendingImage(PendingImage&&) noexcept;
+    PendingImage& operator=(PendingImage&&) noexcept;
+
+    /// Whether get() would return at once, or throw.
+    [[nodiscard]] bool is_ready() const;
+    /// Waits for the picture, and gives it away. Errors of asynchronous work surface here. A stop that is requested when it is on its way changes
+    /// nothing. Throws InvalidArgument if it has been called before.
+    [[nodiscard]] Image get();
+    /// What the picture cost, once get() has returned it; its wall_ms has the calls that rendered and get(). Before, nothing.
+    [[nodiscard]] const RenderStatistics& statistics() const noexcept;
+
+  private:
+    friend class ProgressiveRender;
+    class Impl;
+    explicit PendingImage(std::unique_ptr<Impl> impl) noexcept;
+    std::unique_ptr<Impl> impl_;
+    RenderStatistics statistics_;
+};
+
 /// A picture that grows pass by pass, each of which adds one sample to every pixel: for windows, and for renders that may be stopped
 /// early. The picture is valid after any pass, and after all of them has the bits that Renderer::render gives it.
 ///
@@ -77,6 +103,10 @@ class ProgressiveRender {
 
     /// The mean of the samples that are there; waits. Throws InvalidArgument before the first pass.
     [[nodiscard]] Image image();
+    /// The same without waiting: what PendingImage::get() brings later is not changed by passes, edits of the scene, or anything else that
+    /// comes after this call, and all that the picture was made of may be freed. Waits, but for what it needs only, where the view is one of depth or
+    /// cost, whose colours depend on all pixels, and where the picture has more than 128 MiB.
+    [[nodiscard]] PendingImage image_later();
     /// What was done since the start, as of the last image(); of heat, what that image shows.
     [[nodiscard]] const RenderStatistics& statistics() const noexcept;
 
@@ -92,6 +122,14 @@ class Renderer {
     explicit Renderer(const RenderOptions& options = {});
     /// Renders `scene`, of which `structure` was built, and waits. Throws InvalidData for a degenerate camera.
     [[nodiscard]] Image render(Queue& queue, const DeviceScene& scene, const Structure& structure, const Camera& camera);
+    /// The same without waiting for the picture: the next frame may be edited, built and rendered while the device works on this one, and
+    /// `scene` and `structure` may be freed as soon as the call returns.
+    /// What has to be known on the way is waited for: the number of rays that go on, for each level, where some material mirrors or lets light
+    /// through; whether a structure that was loaded fits the scene; sums that do not fit the device's memory; and what image_later() waits for.
+    /// A scene without such materials, on a structure that was built of it, waits for nothing in a shaded picture of up to 8 million pixels.
+    [[nodiscard]] PendingImage render_later(Queue& queue, const DeviceScene& scene, const Structure& structure,
+                                            const Camera& camera) const;
+    /// Of the last render().
     [[nodiscard]] const RenderStatistics& statistics() const noexcept { return statistics_; }
 
   private:

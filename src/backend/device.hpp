@@ -42,6 +42,20 @@ struct SortBuffers {
     Memory& scratch;
 };
 
+/// A read that is on its way to host memory. Whoever destroys it waits, so that the memory may go afterwards; it may outlive its queue.
+class PendingRead {
+  public:
+    PendingRead() = default;
+    virtual ~PendingRead() = default;
+    PendingRead(const PendingRead&) = delete;
+    PendingRead& operator=(const PendingRead&) = delete;
+
+    /// Whether wait() would not have to.
+    [[nodiscard]] virtual bool is_ready() = 0;
+    /// Waits until the bytes are there. Throws what failed on the device until then.
+    virtual void wait() = 0;
+};
+
 class Queue {
   public:
     virtual ~Queue() = default;
@@ -54,6 +68,9 @@ class Queue {
     /// Copies `source`, which may be changed when the call returns, to `target` from byte `at` on.
     virtual void write(Memory& target, std::uint64_t at, const void* source, std::uint64_t size_bytes) = 0;
     virtual void read(Memory& source, void* target, std::uint64_t size_bytes) = 0;
+    /// The same without waiting: `target` has to stay until the result was waited for or destroyed. `source` need not.
+    [[nodiscard]] virtual std::unique_ptr<PendingRead> read_later(Memory& source, void* target,
+                                                                  std::uint64_t size_bytes) = 0;
     virtual void copy(Memory& source, std::uint64_t source_at, Memory& target, std::uint64_t target_at,
                       std::uint64_t size_bytes) = 0;
     virtual void fill(Memory& target, std::uint32_t pattern, std::uint64_t size_bytes) = 0;

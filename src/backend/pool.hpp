@@ -22,6 +22,9 @@ namespace setka::backend {
 template <typename Handle>
 class Pool {
   public:
+    /// Keeps no more than `most_cached_bytes`: what is given back beyond them makes it forget the rest.
+    explicit Pool(std::uint64_t most_cached_bytes = ~std::uint64_t(0)) : most_cached_bytes_(most_cached_bytes) {}
+
     /// Sizes of pooled allocations: sixteenths of a power of two, so that similar requests share and little is wasted.
     [[nodiscard]] static std::uint64_t pooled_size(std::uint64_t size_bytes) {
         if (!settings().pooling) return size_bytes;
@@ -50,6 +53,11 @@ class Pool {
 
     void give(std::uint64_t size_bytes, Handle handle) noexcept {
         const std::scoped_lock lock(mutex_);
+        if (size_bytes > most_cached_bytes_ - std::min(cached_bytes_, most_cached_bytes_)) {
+            free_.clear();
+            cached_bytes_ = 0;
+        }
+        if (size_bytes > most_cached_bytes_) return;
         try {
             free_.emplace(size_bytes, std::move(handle));
             cached_bytes_ += size_bytes;
@@ -71,6 +79,7 @@ class Pool {
 
   private:
     mutable std::mutex mutex_;
+    std::uint64_t most_cached_bytes_;
     std::multimap<std::uint64_t, Handle> free_;
     std::uint64_t cached_bytes_ = 0;
 };
@@ -79,8 +88,9 @@ class Pool {
 template <typename Handle>
 class PoolList {
   public:
-    [[nodiscard]] std::shared_ptr<Pool<Handle>> make_pool() {
-        auto pool = std::make_shared<Pool<Handle>>();
+    template <typename... Limits>
+    [[nodiscard]] std::shared_ptr<Pool<Handle>> make_pool(Limits... limits) {
+        auto pool = std::make_shared<Pool<Handle>>(limits...);
         const std::scoped_lock lock(mutex_);
         std::erase_if(pools_, [](const auto& weak) { return weak.expired(); });
         pools_.push_back(pool);

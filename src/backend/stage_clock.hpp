@@ -32,11 +32,16 @@ class StageClock {
     /// Adds up the time of every pending span, time_ms(Span&), and forgets it.
     template <typename TimeOf>
     void collect(TimeOf time_ms) {
-        for (auto& [stage, span] : pending_) {
-            stages_[stage].time_ms += time_ms(span);
-            ++stages_[stage].launches;
-        }
-        pending_.clear();
+        collect_first(pending_.size(), time_ms);
+    }
+    /// The same for the older half: the newer may belong to work that nobody wants to wait for yet. wait(Span&) is called for the
+    /// last of them, after which all before it have ended.
+    template <typename Wait, typename TimeOf>
+    void collect_older(Wait wait, TimeOf time_ms) {
+        const std::size_t count = pending_.size() / 2;
+        if (count == 0) return;
+        wait(pending_[count - 1].span);
+        collect_first(count, time_ms);
     }
 
     /// Time of each stage in which something was collected since the last call, in order of first use.
@@ -57,6 +62,17 @@ class StageClock {
         std::size_t stage;
         Span span;
     };
+
+    template <typename TimeOf>
+    void collect_first(std::size_t count, TimeOf time_ms) {
+        const auto end = pending_.begin() + static_cast<std::ptrdiff_t>(count);
+        for (auto it = pending_.begin(); it != end; ++it) {
+            stages_[it->stage].time_ms += time_ms(it->span);
+            ++stages_[it->stage].launches;
+        }
+        pending_.erase(pending_.begin(), end);
+    }
+
     /// Launches before the first begin_stage are "other".
     std::vector<StageTime> stages_{{"other", 0, 0}};
     std::size_t stage_ = 0;

@@ -170,6 +170,28 @@ void Queue::read(const std::shared_ptr<backend::Memory>& source, void* target, s
     impl_->read(*source, target, size_bytes);
 }
 
+std::shared_ptr<backend::PendingRead> Queue::read_later(const std::shared_ptr<backend::Memory>& source, void* target,
+                                                        std::size_t size_bytes) {
+    if (size_bytes == 0) return nullptr;
+    impl_->check_stop("reading '" + source->name() + "'");
+    std::shared_ptr<backend::PendingRead> read = impl_->read_later(*source, target, size_bytes);
+    if (settings().synchronous) read->wait();
+    return read;
+}
+
+bool detail::is_ready(backend::PendingRead* read) { return !read || read->is_ready(); }
+
+void detail::wait(backend::PendingRead* read) {
+    if (read) read->wait();
+}
+
+void detail::take_once(bool& is_there, const char* what) {
+    if (!is_there)
+        throw Error(ErrorCategory::InvalidArgument,
+                    std::string("get() of a ") + what + " that is empty or was fetched before; each can be fetched once");
+    is_there = false;
+}
+
 void Queue::copy_bytes(const std::shared_ptr<backend::Memory>& source, std::size_t source_at,
                        const std::shared_ptr<backend::Memory>& target, std::size_t target_at, std::size_t size_bytes) {
     if (size_bytes == 0) return;

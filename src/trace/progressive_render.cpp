@@ -2,7 +2,6 @@
 /// How does a picture come about? In passes over its pixels, in batches of rays that fit the device; sums of
 /// samples become colours and codes there when a picture is asked for.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -12,6 +11,7 @@
 #include "core/launch.hpp"
 #include "setka/error.hpp"
 #include "setka/renderer.hpp"
+#include "trace/pending_image.hpp"
 #include "trace/pinhole.hpp"
 #include "trace/shading_tables.hpp"
 #include "trace/view_passes.hpp"
@@ -58,22 +58,6 @@ void check_structure(Queue& queue, const DeviceScene& scene, const WorldGeometry
                         "; the structure must be built of the scene");
     check_instances(queue, scene, geometry);
 }
-
-/// Adds the time of a call to `total_ms`.
-class Timer {
-  public:
-    explicit Timer(double& total_ms) : total_ms_(total_ms) {}
-    ~Timer() {
-        total_ms_ +=
-            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
-    }
-    Timer(const Timer&) = delete;
-    Timer& operator=(const Timer&) = delete;
-
-  private:
-    double& total_ms_;
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 }  // namespace
 
@@ -126,21 +110,27 @@ class ProgressiveRender::Impl {
 
     void finish() { add(passes_); }
 
-    [[nodiscard]] Image image() {
+    [[nodiscard]] std::unique_ptr<PendingImage::Impl> image_later() {
         if (done_ == 0)
             throw Error(ErrorCategory::InvalidArgument,
-                        "image() of 0 passes; at least one must have been added");
-        const Timer timer(statistics_.wall_ms);
-        Image image{options_.width, options_.height, {}, {}};
-        if (options_.pixels == Pixels::LinearAndSrgb) image.linear.resize(pixels_);
-        image.srgb.resize(3 * pixels_);
-        if (ViewPasses::is_measure(options_.view)) store_measures(image);
-        else store_colours(image);
-        counts_.collect(queue_);
-        statistics_.primary_rays = pixels_ * done_;
-        statistics_.secondary_rays = counts_.secondary;
-        statistics_.shadow_rays = counts_.shadow;
-        return image;
+                        "a picture of 0 passes was asked for; at least one must have been added");
+        RenderStatistics statistics = statistics_;
+        statistics.primary_rays = pixels_ * done_;
+        statistics.secondary_rays = counts_.secondary;
+        statistics.shadow_rays = counts_.shadow;
+        auto pending = std::make_unique<PendingImage::Impl>(options_, statistics);
+        const Timer timer(pending->statistics().wall_ms);
+        if (ViewPasses::is_measure(options_.view)) store_measures(*pending);
+        else store_colours(*pending);
+        for (const auto& numbers : counts_.pending_shadow) pending->add_shadow_rays(queue_, numbers);
+        return pending;
+    }
+
+    /// A picture that was asked for last has come, with these numbers.
+    void note(const RenderStatistics& statistics) {
+        statistics_ = statistics;
+        counts_.shadow = statistics.shadow_rays;
+        counts_.pending_shadow.clear();
     }
 
     [[nodiscard]] std::uint32_t passes() const { return passes_; }
@@ -196,7 +186,7 @@ class ProgressiveRender::Impl {
         return {made, {}, options_.width * samples};
     }
 
-    void store_colours(Image& image) {
+    void store_colours(PendingImage::Impl& image) {
         for_each_batch(store_batch_, batch_rays, [&](std::uint32_t first, std::uint32_t count) {
             sums_.read(first, count, [&](const SampleSums::Part& part) {
                 store(first, count, view_->colours(count, done_, part), image);
@@ -204,14 +194,14 @@ class ProgressiveRender::Impl {
         });
     }
 
-    void store_measures(Image& image) {
+    void store_measures(PendingImage::Impl& image) {
         std::vector<float> values(pixels_);
         for_each_batch(store_batch_, batch_rays, [&](std::uint32_t first, std::uint32_t count) {
             sums_.read(first, count, [&](const SampleSums::Part& part) {
                 queue_.download(view_->values(count, done_, part), std::span(values).subspan(first, count));
             });
         });
-        const float maximum = scale_of(values);
+        const float maximum = scale_of(values, image.statistics());
         const std::vector<float> knots = options_.view == View::Depth ? make_depth_ramp() : make_heat_ramp();
         const auto ramp = queue_.upload(std::span(knots), "colour ramp");
         for_each_batch(store_batch_, batch_rays, [&](std::uint32_t first, std::uint32_t count) {
@@ -225,22 +215,21 @@ class ProgressiveRender::Impl {
     }
 
     /// What the end of the ramp stands for.
-    [[nodiscard]] float scale_of(const std::vector<float>& values) {
+    [[nodiscard]] float scale_of(const std::vector<float>& values, RenderStatistics& statistics) const {
         const float maximum = std::max(0.0f, *std::max_element(values.begin(), values.end()));
         if (options_.view == View::Depth) return maximum;
         double sum = 0;
         for (const float value : values) sum += value;
-        statistics_.heat_mean = sum / double(values.size());
-        statistics_.heat_maximum = static_cast<std::uint32_t>(std::min(std::ceil(maximum), 4294967040.0f));
-        return static_cast<float>(statistics_.heat_maximum);
+        statistics.heat_mean = sum / double(values.size());
+        statistics.heat_maximum = static_cast<std::uint32_t>(std::min(std::ceil(maximum), 4294967040.0f));
+        return static_cast<float>(statistics.heat_maximum);
     }
 
-    /// Encodes and fetches `count` finished pixels.
-    void store(std::uint32_t first, std::uint32_t count, const Buffer<Float3>& linear, Image& image) {
+    /// Encodes `count` finished pixels, which go to the picture.
+    void store(std::uint32_t first, std::uint32_t count, const Buffer<Float3>& linear, PendingImage::Impl& image) {
         const auto codes = queue_.make_buffer<std::uint8_t>(std::size_t(count) * 3, "sRGB codes");
         launch_items(queue_, Kernel::shade_encode, count * 3, linear, thresholds_, codes);
-        if (!image.linear.empty()) queue_.download(linear, std::span(image.linear).subspan(first, count));
-        queue_.download(codes, std::span(image.srgb).subspan(std::size_t(first) * 3, std::size_t(count) * 3));
+        image.add_pixels(queue_, first, linear, codes);
     }
 
     Queue queue_;
@@ -272,7 +261,13 @@ std::uint32_t ProgressiveRender::passes() const noexcept { return impl_->passes(
 std::uint32_t ProgressiveRender::passes_done() const noexcept { return impl_->passes_done(); }
 void ProgressiveRender::add_pass() { impl_->add(1); }
 void ProgressiveRender::finish() { impl_->finish(); }
-Image ProgressiveRender::image() { return impl_->image(); }
+Image ProgressiveRender::image() {
+    PendingImage pending = image_later();
+    Image image = pending.get();
+    impl_->note(pending.statistics());
+    return image;
+}
+PendingImage ProgressiveRender::image_later() { return PendingImage(impl_->image_later()); }
 const RenderStatistics& ProgressiveRender::statistics() const noexcept { return impl_->statistics(); }
 
 }  // namespace setka

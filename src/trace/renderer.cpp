@@ -19,11 +19,17 @@ Renderer::Renderer(const RenderOptions& options) : options_(options) { check_opt
 Image Renderer::render(Queue& queue, const DeviceScene& scene, const Structure& structure,
                        const Camera& camera) {
     statistics_ = {};
-    ProgressiveRender picture(queue, scene, structure, camera, options_);
-    picture.finish();
-    Image image = picture.image();
+    PendingImage picture = render_later(queue, scene, structure, camera);
+    Image image = picture.get();
     statistics_ = picture.statistics();
     return image;
+}
+
+PendingImage Renderer::render_later(Queue& queue, const DeviceScene& scene, const Structure& structure,
+                                    const Camera& camera) const {
+    ProgressiveRender picture(queue, scene, structure, camera, options_);
+    picture.finish();
+    return picture.image_later();
 }
 
 }  // namespace setka

@@ -2,6 +2,8 @@
 /// How is a failure made? See the header.
 #include "faults/faulty_queue.hpp"
 
+#include <algorithm>
+
 #include "setka/error.hpp"
 
 namespace faults {
@@ -20,6 +22,8 @@ const char* to_string(Step step) noexcept {
             return "write";
         case Step::Read:
             return "read";
+        case Step::Arrive:
+            return "arrival";
         case Step::Copy:
             return "copy";
         case Step::Fill:
@@ -83,7 +87,7 @@ std::shared_ptr<Memory> FaultyQueue::wrap_host(void* data, std::uint64_t size_by
 void FaultyQueue::launch(setka::Kernel kernel, std::uint32_t group_count, std::uint32_t group_size,
                          const setka::Arguments& arguments) {
     fail_if_due(Step::Launch, to_string(kernel));
-    is_idle_ = false;
+    ++launched_;
     ++launches_;
     if (replaced_ && replaced_->first == kernel)
         replaced_->second(*real_, group_count, group_size, arguments);
@@ -99,9 +103,41 @@ void FaultyQueue::write(Memory& target, std::uint64_t at, const void* source, st
 
 void FaultyQueue::read(Memory& source, void* target, std::uint64_t size_bytes) {
     fail_if_due(Step::Read, source.name());
-    real_->read(source, target, size_bytes);
-    is_idle_ = true;
     ++waits_;
+    real_->read(source, target, size_bytes);
+    waited_for_ = launched_;
+}
+
+/// Asks the queue, while there is one, whether it is to fail.
+class FaultyQueue::PendingRead final : public setka::backend::PendingRead {
+  public:
+    PendingRead(std::weak_ptr<FaultyQueue> queue, std::string name,
+                std::unique_ptr<setka::backend::PendingRead> real, std::uint64_t launched)
+        : queue_(std::move(queue)), name_(std::move(name)), real_(std::move(real)), launched_(launched) {}
+
+    [[nodiscard]] bool is_ready() override { return real_->is_ready(); }
+    void wait() override {
+        const auto queue = queue_.lock();
+        if (queue) {
+            ++queue->waits_;
+            queue->fail_if_due(Step::Arrive, name_);
+        }
+        real_->wait();
+        if (queue) queue->waited_for_ = std::max(queue->waited_for_, launched_);
+    }
+
+  private:
+    std::weak_ptr<FaultyQueue> queue_;
+    std::string name_;
+    std::unique_ptr<setka::backend::PendingRead> real_;
+    std::uint64_t launched_;  ///< before the read
+};
+
+std::unique_ptr<setka::backend::PendingRead> FaultyQueue::read_later(Memory& source, void* target,
+                                                                     std::uint64_t size_bytes) {
+    fail_if_due(Step::Read, source.name());
+    return std::make_unique<PendingRead>(weak_from_this(), source.name(),
+                                         real_->read_later(source, target, size_bytes), launched_);
 }
 
 void FaultyQueue::copy(Memory& source, std::uint64_t source_at, Memory& target, std::uint64_t target_at,
@@ -116,15 +152,15 @@ void FaultyQueue::fill(Memory& target, std::uint32_t pattern, std::uint64_t size
 }
 
 void FaultyQueue::finish() {
-    real_->finish();
-    is_idle_ = true;
     ++waits_;
+    real_->finish();
+    waited_for_ = launched_;
 }
 
 void FaultyQueue::library_scan(Memory& counts, Memory& offsets, Memory& total, Memory& scratch,
                                std::uint32_t n) {
     fail_if_due(Step::Launch, "library scan");
-    is_idle_ = false;
+    ++launched_;
     ++launches_;
     real_->library_scan(counts, offsets, total, scratch, n);
 }
@@ -132,7 +168,7 @@ void FaultyQueue::library_scan(Memory& counts, Memory& offsets, Memory& total, M
 int FaultyQueue::library_sort(const setka::backend::SortBuffers& buffers, std::uint32_t n,
                               std::uint32_t key_bits) {
     fail_if_due(Step::Launch, "library sort");
-    is_idle_ = false;
+    ++launched_;
     ++launches_;
     return real_->library_sort(buffers, n, key_bits);
 }

@@ -15,9 +15,18 @@
 namespace faults {
 
 /// What a queue can be asked for that may fail.
-enum class Step { Allocate, Wrap, Launch, Write, Read, Copy, Fill };
-inline constexpr Step all_steps[] = {Step::Allocate, Step::Wrap, Step::Launch,
-                                     Step::Write,    Step::Read, Step::Copy,   Step::Fill};
+enum class Step {
+    Allocate,
+    Wrap,
+    Launch,
+    Write,
+    Read,    ///< when it is asked for, with waiting or without
+    Arrive,  ///< a read that was asked for without waiting, when somebody waits for it
+    Copy,
+    Fill
+};
+inline constexpr Step all_steps[] = {Step::Allocate, Step::Wrap,   Step::Launch, Step::Write,
+                                     Step::Read,     Step::Arrive, Step::Copy,   Step::Fill};
 
 [[nodiscard]] const char* to_string(Step step) noexcept;
 
@@ -26,7 +35,7 @@ enum class Persistence {
     Onward,  ///< every later one of its kind as well
 };
 
-class FaultyQueue final : public setka::backend::Queue {
+class FaultyQueue final : public setka::backend::Queue, public std::enable_shared_from_this<FaultyQueue> {
   public:
     FaultyQueue(setka::Device device, std::shared_ptr<setka::backend::Queue> real)
         : device_(std::move(device)), real_(std::move(real)) {}
@@ -51,12 +60,12 @@ class FaultyQueue final : public setka::backend::Queue {
     [[nodiscard]] const std::string& failed_name() const { return failed_name_; }
     /// Kernels that were launched since the last fail() or before().
     [[nodiscard]] std::uint32_t launches() const { return launches_; }
-    /// How often the host waited for the device so far: by a transfer to the host or without one.
-    [[nodiscard]] std::uint32_t waits() const { return waits_; }
     /// Bytes that went from the host to the device so far.
     [[nodiscard]] std::uint64_t written_bytes() const { return written_bytes_; }
+    /// How often somebody waited for the device so far: to read, to finish, to take times.
+    [[nodiscard]] std::uint32_t waits() const { return waits_; }
     /// Whether every kernel that was launched has been waited for.
-    [[nodiscard]] bool is_idle() const { return is_idle_; }
+    [[nodiscard]] bool is_idle() const { return waited_for_ == launched_; }
 
     [[nodiscard]] std::shared_ptr<setka::backend::Memory> allocate(std::uint64_t size_bytes,
                                                                    std::string_view name) override;
@@ -68,12 +77,17 @@ class FaultyQueue final : public setka::backend::Queue {
     void write(setka::backend::Memory& target, std::uint64_t at, const void* source,
                std::uint64_t size_bytes) override;
     void read(setka::backend::Memory& source, void* target, std::uint64_t size_bytes) override;
+    [[nodiscard]] std::unique_ptr<setka::backend::PendingRead> read_later(setka::backend::Memory& source, void* target,
+                                                                          std::uint64_t size_bytes) override;
     void copy(setka::backend::Memory& source, std::uint64_t source_at, setka::backend::Memory& target,
               std::uint64_t target_at, std::uint64_t size_bytes) override;
     void fill(setka::backend::Memory& target, std::uint32_t pattern, std::uint64_t size_bytes) override;
     void finish() override;
     void begin_stage(std::string_view stage) override { real_->begin_stage(stage); }
-    [[nodiscard]] std::vector<setka::StageTime> take_timings() override { return real_->take_timings(); }
+    [[nodiscard]] std::vector<setka::StageTime> take_timings() override {
+        ++waits_;
+        return real_->take_timings();
+    }
     [[nodiscard]] std::uint64_t library_scan_bytes(std::uint32_t n) override {
         return real_->library_scan_bytes(n);
     }
@@ -87,6 +101,7 @@ class FaultyQueue final : public setka::backend::Queue {
                                    std::uint32_t key_bits) override;
 
   private:
+    class PendingRead;
     struct Fault {
         Step step;
         std::uint32_t steps_left;
@@ -103,10 +118,10 @@ class FaultyQueue final : public setka::backend::Queue {
     std::shared_ptr<setka::backend::Queue> real_;
     std::optional<Fault> fault_;
     bool has_failed_ = false;
-    bool is_idle_ = true;
     std::uint32_t launches_ = 0;
     std::uint32_t waits_ = 0;
     std::optional<std::pair<setka::Kernel, Launch>> replaced_;
+    std::uint64_t launched_ = 0, waited_for_ = 0;  ///< kernels, in all
     std::uint64_t written_bytes_ = 0;
     std::string failed_name_;
 };

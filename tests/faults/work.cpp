@@ -139,6 +139,33 @@ Work editing(const std::string& name) {
             Work::OnOutOfMemory::MayRecover};  // a table that cannot grow by half grows by what is needed
 }
 
+/// Two frames in flight: the second is edited and built while the picture of the first is on its way.
+Work rendering_frames(const std::string& name) {
+    return {name,
+            [](Queue& queue, const World& world) {
+                setka::DeviceScene scene(queue, world.scene);
+                setka::RenderOptions options;
+                options.width = 12;
+                options.height = 8;
+                options.max_depth = 0;
+                const setka::Renderer renderer(options);
+                std::vector<setka::PendingImage> pictures;
+                for (const float shift : {0.0f, 0.5f}) {
+                    scene.set_transform(0, {{1, 0, 0, shift, 0, 1, 0, 0, 0, 0, 1, 0}});
+                    scene.commit(queue);
+                    const setka::Grid grid = setka::make_grid_builder({.density = 2})->build(queue, scene);
+                    pictures.push_back(renderer.render_later(queue, scene, grid, *world.scene.camera));
+                }
+                Bytes bytes;
+                for (setka::PendingImage& picture : pictures) {
+                    const setka::Image image = picture.get();
+                    bytes.add(image.linear).add(image.srgb);
+                }
+                return bytes.get();
+            },
+            Work::OnOutOfMemory::MayRecover};
+}
+
 Work tracing_from_host(const std::string& name) {
     return {name, [](Queue& queue, const World& world) {
                 const setka::Tracer tracer;
@@ -217,6 +244,7 @@ const std::vector<Work>& all_work() {
         rendering("render_depth", setka::View::Depth),
         rendering("render_tests", setka::View::Tests),
         rendering_in_passes(),
+        rendering_frames("render_frames"),
     };
     return all;
 }

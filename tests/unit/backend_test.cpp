@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
-/// Is what the backends share right? Options, stage times and pooled memory, without a device.
+/// Is what the backends share right? Options, stage times, pooled memory and staging, without a device.
 #include <gtest/gtest.h>
 
 #include "backend/pooled_memory.hpp"
 #include "backend/resolve_options.hpp"
 #include "backend/stage_clock.hpp"
+#include "backend/staging_ring.hpp"
 
 namespace setka::backend {
 namespace {
+
+using Handle = std::shared_ptr<int>;
 
 DeviceInfo some_info() {
     DeviceInfo info;
@@ -134,6 +137,106 @@ TEST(StageClock, AsksToBeCollected) {
     EXPECT_EQ(clock.take_timings().at(0).launches, StageClock<int>::max_pending);
 }
 
+TEST(StageClock, CollectsTheOlderHalf) {
+    StageClock<int> clock;
+    for (int i = 0; i < 7; ++i) clock.add(1 << i);
+    std::vector<int> waited;
+    clock.collect_older([&](int last) { waited.push_back(last); }, [](int time_ms) { return time_ms; });
+    EXPECT_EQ(waited, std::vector{4});
+    EXPECT_EQ(clock.take_timings().at(0).time_ms, 1 + 2 + 4);
+    clock.collect([](int time_ms) { return time_ms; });
+    EXPECT_EQ(clock.take_timings().at(0).time_ms, 8 + 16 + 32 + 64) << "the newer half is still there";
+}
+
+/// The device's side of a ring: numbers of what was staged, up to which it has come.
+class RingModel {
+  public:
+    void write(std::size_t size) {
+        ring_.use(size, [&](int number) { return number < ended_; }, [&](int number) { wait(number); },
+                  [&](std::size_t place) { return check(place, size); });
+    }
+    void run(int writes) { ended_ = std::min(ended_ + writes, made_); }
+    [[nodiscard]] int waits() const { return waits_; }
+    [[nodiscard]] const StagingRing<int>& ring() const { return ring_; }
+
+    static constexpr std::size_t capacity = 16 * StagingRing<int>::alignment;
+
+  private:
+    struct Staged {
+        int number;
+        std::size_t begin, end;
+    };
+    void wait(int number) {
+        ++waits_;
+        EXPECT_EQ(number, ended_) << "not the oldest, or one that has ended";
+        ended_ = std::max(ended_, number + 1);
+    }
+    int check(std::size_t begin, std::size_t size) {
+        std::erase_if(staged_, [&](const Staged& s) { return s.number < ended_; });
+        EXPECT_LE(begin + size, capacity);
+        for (const Staged& s : staged_) EXPECT_TRUE(begin >= s.end || begin + size <= s.begin) << "the device reads there";
+        staged_.push_back({made_, begin, begin + size});
+        return made_++;
+    }
+
+    StagingRing<int> ring_{capacity};
+    std::vector<Staged> staged_;
+    int made_ = 0, ended_ = 0, waits_ = 0;
+};
+
+TEST(StagingRing, GivesNoPlaceTwiceAndWaitsForTheOldestOnly) {
+    RingModel model;
+    std::uint32_t state = 1;
+    const auto random = [&](std::uint32_t below) { return (state = state * 1664525 + 1013904223) / 65536 % below; };
+    for (int i = 0; i < 20000; ++i) {
+        model.write(1 + random(random(4) == 0 ? RingModel::capacity : 700));
+        model.run(static_cast<int>(random(3)));
+    }
+    EXPECT_GT(model.waits(), 100);
+    model.run(1 << 30);
+    const int before = model.waits();
+    model.write(RingModel::capacity);
+    EXPECT_EQ(model.waits(), before) << "there was room for all";
+}
+
+TEST(StagingRing, WaitsForNothingWhileThereIsRoom) {
+    RingModel model;
+    for (int i = 0; i < 16; ++i) model.write(StagingRing<int>::alignment - 1);
+    EXPECT_EQ(model.waits(), 0);
+    model.write(1);
+    EXPECT_EQ(model.waits(), 1);
+    model.write(1);
+    EXPECT_EQ(model.waits(), 2) << "one place was given back, and is in use again";
+}
+
+TEST(StagingRing, ForgetsWhatFails) {
+    StagingRing<int> ring(1024);
+    const auto fail = [](auto&&...) -> int { throw Error(ErrorCategory::DeviceFailed, "lost"); };
+    const auto never = [](int) { return false; };
+    EXPECT_THROW(ring.use(1024, never, fail, fail), Error);
+    EXPECT_TRUE(ring.empty()) << "what was not enqueued";
+    ring.use(1024, never, fail, [](std::size_t) { return 1; });
+    EXPECT_THROW(ring.use(1, never, fail, fail), Error);
+    EXPECT_TRUE(ring.empty()) << "what failed on the device";
+    ring.use(1024, never, fail, [](std::size_t) { return 1; });
+    EXPECT_THROW(ring.retire([](int) -> bool { throw Error(ErrorCategory::DeviceFailed, "lost"); }), Error);
+    EXPECT_TRUE(ring.empty());
+}
+
+TEST(Pool, KeepsNoMoreThanItsMost) {
+    Pool<Handle> pool(1000);
+    const auto live = std::make_shared<int>(1);
+    pool.give(600, live);
+    pool.give(400, live);
+    EXPECT_EQ(pool.cached_bytes(), 1000u);
+    pool.give(1, live);
+    EXPECT_EQ(pool.cached_bytes(), 1u);
+    EXPECT_EQ(live.use_count(), 2);
+    pool.give(1001, live);
+    EXPECT_EQ(pool.cached_bytes(), 0u);
+    EXPECT_EQ(live.use_count(), 1);
+}
+
 /// A device that only counts bytes.
 class CountingDevice final : public Device {
   public:
@@ -153,7 +256,6 @@ class CountingDevice final : public Device {
     DeviceOptions options_;
 };
 
-using Handle = std::shared_ptr<int>;
 using TestMemory = PooledMemory<Handle>;
 
 struct Allocator {

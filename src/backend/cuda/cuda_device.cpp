@@ -35,7 +35,8 @@ DeviceCapabilities CudaDevice::capabilities() const {
 }
 
 std::shared_ptr<Queue> CudaDevice::make_queue() {
-    return std::make_shared<CudaQueue>(std::static_pointer_cast<CudaDevice>(shared_from_this()), pools_.make_pool());
+    return std::make_shared<CudaQueue>(std::static_pointer_cast<CudaDevice>(shared_from_this()), pools_.make_pool(),
+                                       landings_.make_pool(most_cached_landing_bytes));
 }
 
 }  // namespace setka::backend

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstring>
+#include <deque>
 
 #include "backend/cuda/kernel_table.hpp"
 #include "backend/pooled_memory.hpp"
@@ -13,8 +15,12 @@ namespace setka::backend {
 
 namespace {
 
-/// Pinned memory for transfers, one of two halves: large enough for full speed, small enough to have always.
-constexpr std::size_t staging_bytes = std::size_t(8) << 20;
+/// Pinned memory for writes that the device has yet to make: the vertices of a million that move, with normals, without waiting.
+constexpr std::size_t staging_bytes = std::size_t(32) << 20;
+/// Transfers go in pieces: large enough for full speed, small enough that the host copies one while the device copies another.
+constexpr std::size_t piece_bytes = std::size_t(8) << 20;
+/// The least that is pinned for a read: pieces are powers of two from here on, so that few sizes serve all.
+constexpr std::uint64_t least_landing_bytes = std::uint64_t(64) << 10;
 
 using CudaMemory = PooledMemory<CudaBuffer>;
 
@@ -25,23 +31,90 @@ T* pointer_as(Memory& memory) {
     return static_cast<T*>(pointer_of(memory));
 }
 
+/// An event that only tells that the device has come so far.
+CudaEvent make_event() {
+    cudaEvent_t event = nullptr;
+    check(cudaEventCreateWithFlags(&event, cudaEventDisableTiming), "making an event");
+    return CudaEvent(event);
+}
+
+CudaPinned make_pinned(std::uint64_t size_bytes) {
+    void* pinned = nullptr;
+    check(cudaHostAlloc(&pinned, size_bytes, cudaHostAllocDefault),
+          "allocating " + std::to_string(size_bytes) + " bytes of pinned host memory for transfers");
+    return CudaPinned(static_cast<std::byte*>(pinned));
+}
+
+bool has_ended(const CudaEvent& event, const std::string& what) {
+    const cudaError_t code = cudaEventQuery(event.get());
+    if (code != cudaErrorNotReady) check(code, what);
+    else (void)cudaGetLastError();  // it is no error, but kept as one
+    return code != cudaErrorNotReady;
+}
+
 }  // namespace
 
-CudaQueue::CudaQueue(std::shared_ptr<CudaDevice> device, std::shared_ptr<CudaPool> pool)
-    : device_(std::move(device)), pool_(std::move(pool)) {
+/// The device writes pinned memory, from where wait() copies on, piece by piece.
+class CudaPendingRead final : public PendingRead {
+  public:
+    CudaPendingRead(std::string what, void* target, std::shared_ptr<CudaLandings> landings)
+        : what_(std::move(what)), target_(static_cast<std::byte*>(target)), landings_(std::move(landings)) {}
+    ~CudaPendingRead() override {
+        for (Piece& piece : pieces_) {
+            check_noexcept(cudaEventSynchronize(piece.landing.written.get()), "cudaEventSynchronize");
+            landings_->give(piece.landing_bytes, std::move(piece.landing));
+        }
+    }
+
+    [[nodiscard]] const std::string& what() const noexcept { return what_; }
+    [[nodiscard]] std::size_t pieces() const noexcept { return pieces_.size(); }
+
+    /// Pinned memory for the next piece.
+    [[nodiscard]] const CudaLanding& add_piece(std::uint64_t size_bytes) {
+        const std::uint64_t landing_bytes = std::max(std::bit_ceil(size_bytes), least_landing_bytes);
+        auto pooled = landings_->take(landing_bytes);
+        pieces_.push_back({size_bytes, landing_bytes,
+                           pooled ? std::move(pooled->handle) : CudaLanding{make_pinned(landing_bytes), make_event()}});
+        return pieces_.back().landing;
+    }
+    void wait_for_oldest() {
+        Piece& piece = pieces_.front();
+        check(cudaEventSynchronize(piece.landing.written.get()), what_);
+        std::memcpy(target_, piece.landing.memory.get(), piece.size_bytes);
+        target_ += piece.size_bytes;
+        landings_->give(piece.landing_bytes, std::move(piece.landing));
+        pieces_.pop_front();
+    }
+
+    [[nodiscard]] bool is_ready() override {
+        // A failure is something that wait() tells without waiting.
+        const cudaError_t code = pieces_.empty() ? cudaSuccess : cudaEventQuery(pieces_.back().landing.written.get());
+        if (code == cudaErrorNotReady) (void)cudaGetLastError();
+        return code != cudaErrorNotReady;
+    }
+    void wait() override {
+        while (!pieces_.empty()) wait_for_oldest();
+    }
+
+  private:
+    struct Piece {
+        std::uint64_t size_bytes, landing_bytes;
+        CudaLanding landing;
+    };
+
+    std::string what_;
+    std::byte* target_;  ///< of the oldest piece
+    std::shared_ptr<CudaLandings> landings_;
+    std::deque<Piece> pieces_;
+};
+
+CudaQueue::CudaQueue(std::shared_ptr<CudaDevice> device, std::shared_ptr<CudaPool> pool, std::shared_ptr<CudaLandings> landings)
+    : device_(std::move(device)), pool_(std::move(pool)), landings_(std::move(landings)), staged_(staging_bytes) {
     select();
     cudaStream_t stream = nullptr;
     check(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "making a stream on " + device_->info().id);
     stream_.reset(stream);
-    void* staging = nullptr;
-    check(cudaHostAlloc(&staging, 2 * staging_bytes, cudaHostAllocDefault),
-          "allocating " + std::to_string(2 * staging_bytes) + " bytes of pinned host memory for transfers");
-    staging_.reset(static_cast<std::byte*>(staging));
-    for (CudaEvent& staged : staged_) {
-        cudaEvent_t event = nullptr;
-        check(cudaEventCreateWithFlags(&event, cudaEventDisableTiming), "making an event");
-        staged.reset(event);
-    }
+    staging_ = make_pinned(staging_bytes);
 }
 
 CudaQueue::~CudaQueue() {
@@ -85,41 +158,48 @@ void CudaQueue::launch(Kernel kernel, std::uint32_t group_count, std::uint32_t g
 
 void CudaQueue::write(Memory& target, std::uint64_t at, const void* source, std::uint64_t size_bytes) {
     select();
+    const std::string what = "writing '" + target.name() + "'";
     const auto* from = static_cast<const std::byte*>(source);
     auto* to = pointer_as<std::byte>(target) + at;
-    for (std::size_t done = 0, half = 0; done < size_bytes; half ^= 1) {
-        const std::size_t part = std::min<std::size_t>(staging_bytes, size_bytes - done);
-        std::byte* staging = staging_.get() + half * staging_bytes;
-        check(cudaEventSynchronize(staged_[half].get()), "writing '" + target.name() + "'");
-        std::memcpy(staging, from + done, part);
-        check(cudaMemcpyAsync(to + done, staging, part, cudaMemcpyHostToDevice, stream_.get()),
-              "writing '" + target.name() + "'");
-        check(cudaEventRecord(staged_[half].get(), stream_.get()), "writing '" + target.name() + "'");
-        done += part;
+    const auto has_read = [&](const CudaEvent& event) { return has_ended(event, what); };
+    const auto wait = [&](const CudaEvent& oldest) { check(cudaEventSynchronize(oldest.get()), what); };
+    for (std::size_t done = 0, part = 0; done < size_bytes; done += part) {
+        part = std::min<std::size_t>(piece_bytes, size_bytes - done);
+        staged_.use(part, has_read, wait, [&](std::size_t place) {
+            CudaEvent event = make_event();
+            std::memcpy(staging_.get() + place, from + done, part);
+            check(cudaMemcpyAsync(to + done, staging_.get() + place, part, cudaMemcpyHostToDevice, stream_.get()), what);
+            check(cudaEventRecord(event.get(), stream_.get()), what);
+            return event;
+        });
     }
+}
+
+void CudaQueue::read_piece(Memory& source, std::uint64_t at, std::uint64_t size_bytes, CudaPendingRead& pending) {
+    const CudaLanding& landing = pending.add_piece(size_bytes);
+    check(cudaMemcpyAsync(landing.memory.get(), pointer_as<const std::byte>(source) + at, size_bytes,
+                          cudaMemcpyDeviceToHost, stream_.get()),
+          pending.what());
+    check(cudaEventRecord(landing.written.get(), stream_.get()), pending.what());
 }
 
 void CudaQueue::read(Memory& source, void* target, std::uint64_t size_bytes) {
     select();
-    const auto* from = pointer_as<const std::byte>(source);
-    auto* to = static_cast<std::byte*>(target);
-    const std::string what = "reading '" + source.name() + "'";
-    const auto part_at = [&](std::size_t at) { return std::min<std::size_t>(staging_bytes, size_bytes - at); };
-    const auto fetch = [&](std::size_t at, std::size_t half) {
-        check(cudaMemcpyAsync(staging_.get() + half * staging_bytes, from + at, part_at(at), cudaMemcpyDeviceToHost,
-                              stream_.get()),
-              what);
-        check(cudaEventRecord(staged_[half].get(), stream_.get()), what);
-    };
-    // While one half is copied out by the host, the device fills the other.
-    if (size_bytes > 0) fetch(0, 0);
-    for (std::size_t done = 0, half = 0; done < size_bytes; half ^= 1) {
-        const std::size_t part = part_at(done);
-        if (done + part < size_bytes) fetch(done + part, half ^ 1);
-        check(cudaEventSynchronize(staged_[half].get()), what);
-        std::memcpy(to + done, staging_.get() + half * staging_bytes, part);
-        done += part;
+    CudaPendingRead pending("reading '" + source.name() + "'", target, landings_);
+    // While the host copies one piece, the device fills another; a large table never needs more pinned memory than two.
+    for (std::uint64_t at = 0; at < size_bytes; at += piece_bytes) {
+        read_piece(source, at, std::min<std::uint64_t>(piece_bytes, size_bytes - at), pending);
+        if (pending.pieces() == 2) pending.wait_for_oldest();
     }
+    pending.wait();
+}
+
+std::unique_ptr<PendingRead> CudaQueue::read_later(Memory& source, void* target, std::uint64_t size_bytes) {
+    select();
+    auto pending = std::make_unique<CudaPendingRead>("reading '" + source.name() + "'", target, landings_);
+    for (std::uint64_t at = 0; at < size_bytes; at += piece_bytes)
+        read_piece(source, at, std::min<std::uint64_t>(piece_bytes, size_bytes - at), *pending);
+    return pending;
 }
 
 void CudaQueue::copy(Memory& source, std::uint64_t source_at, Memory& target, std::uint64_t target_at,
@@ -154,13 +234,15 @@ std::vector<StageTime> CudaQueue::take_timings() {
 
 void CudaQueue::collect_events() {
     finish();
-    clock_.collect([&](Span& span) {
-        float time_ms = 0;
-        check(cudaEventElapsedTime(&time_ms, span.start.get(), span.end.get()), "reading an event");
-        spare_events_.push_back(std::move(span.start));
-        spare_events_.push_back(std::move(span.end));
-        return static_cast<double>(time_ms);
-    });
+    clock_.collect([&](Span& span) { return time_of(span); });
+}
+
+double CudaQueue::time_of(Span& span) {
+    float time_ms = 0;
+    check(cudaEventElapsedTime(&time_ms, span.start.get(), span.end.get()), "reading an event");
+    spare_events_.push_back(std::move(span.start));
+    spare_events_.push_back(std::move(span.end));
+    return static_cast<double>(time_ms);
 }
 
 CudaEvent CudaQueue::take_event() {
@@ -183,7 +265,9 @@ void CudaQueue::timed(const std::string& what, Enqueue enqueue) {
     check(cudaEventRecord(span.end.get(), stream_.get()), "recording an event");
     clock_.add(std::move(span));
     if (settings().synchronous) check(cudaStreamSynchronize(stream_.get()), what);
-    if (clock_.is_full()) collect_events();
+    if (clock_.is_full())
+        clock_.collect_older([](Span& last) { check(cudaEventSynchronize(last.end.get()), "waiting for an event"); },
+                             [&](Span& old) { return time_of(old); });
 }
 
 std::uint64_t CudaQueue::library_scan_bytes(std::uint32_t n) {

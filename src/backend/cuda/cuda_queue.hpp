@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// What does a queue mean in CUDA? A stream with its pool of buffers, pinned memory for transfers, and events for timing.
+/// What does a queue mean in CUDA? A stream with its pool of buffers, pinned memory for transfers, and events that tell when.
 #pragma once
 
 #include <memory>
@@ -8,22 +8,19 @@
 
 #include "backend/cuda/cuda_device.hpp"
 #include "backend/stage_clock.hpp"
+#include "backend/staging_ring.hpp"
 
 namespace setka::backend {
 
-/// Owners of a stream, an event and pinned host memory.
-struct CudaDestroy {
-    void operator()(cudaStream_t stream) const noexcept { check_noexcept(cudaStreamDestroy(stream), "cudaStreamDestroy"); }
-    void operator()(cudaEvent_t event) const noexcept { check_noexcept(cudaEventDestroy(event), "cudaEventDestroy"); }
-    void operator()(std::byte* pinned) const noexcept { check_noexcept(cudaFreeHost(pinned), "cudaFreeHost"); }
-};
-using CudaStream = std::unique_ptr<CUstream_st, CudaDestroy>;
-using CudaEvent = std::unique_ptr<CUevent_st, CudaDestroy>;
-using CudaPinned = std::unique_ptr<std::byte, CudaDestroy>;
+/// Pinned memory that waits for the next read: two pictures of 3840 x 2160 pixels, linear and coded. To pin memory takes longer than to
+/// fill it.
+constexpr std::uint64_t most_cached_landing_bytes = std::uint64_t(256) << 20;
+
+class CudaPendingRead;
 
 class CudaQueue final : public Queue {
   public:
-    CudaQueue(std::shared_ptr<CudaDevice> device, std::shared_ptr<CudaPool> pool);
+    CudaQueue(std::shared_ptr<CudaDevice> device, std::shared_ptr<CudaPool> pool, std::shared_ptr<CudaLandings> landings);
     ~CudaQueue() override;
 
     [[nodiscard]] std::shared_ptr<Memory> allocate(std::uint64_t size_bytes, std::string_view name) override;
@@ -33,6 +30,8 @@ class CudaQueue final : public Queue {
                 const Arguments& arguments) override;
     void write(Memory& target, std::uint64_t at, const void* source, std::uint64_t size_bytes) override;
     void read(Memory& source, void* target, std::uint64_t size_bytes) override;
+    [[nodiscard]] std::unique_ptr<PendingRead> read_later(Memory& source, void* target,
+                                                          std::uint64_t size_bytes) override;
     void copy(Memory& source, std::uint64_t source_at, Memory& target, std::uint64_t target_at,
               std::uint64_t size_bytes) override;
     void fill(Memory& target, std::uint32_t pattern, std::uint64_t size_bytes) override;
@@ -52,16 +51,21 @@ class CudaQueue final : public Queue {
 
     void select() const;
     [[nodiscard]] CudaEvent take_event();
+    /// Enqueues the copy of `source` from byte `at` on to pinned memory that `pending` empties.
+    void read_piece(Memory& source, std::uint64_t at, std::uint64_t size_bytes, CudaPendingRead& pending);
     /// Calls enqueue(), which returns a code, between two events that time it.
     template <typename Enqueue>
     void timed(const std::string& what, Enqueue enqueue);
     void collect_events();
+    /// Its time in milliseconds; its events serve again.
+    [[nodiscard]] double time_of(Span& span);
 
     std::shared_ptr<CudaDevice> device_;
     std::shared_ptr<CudaPool> pool_;
+    std::shared_ptr<CudaLandings> landings_;
     CudaStream stream_;
-    CudaPinned staging_;   ///< pinned, two halves
-    CudaEvent staged_[2];  ///< when the half was last read or written by the device
+    CudaPinned staging_;  ///< of writes
+    StagingRing<CudaEvent> staged_;
     StageClock<Span> clock_;
     std::vector<CudaEvent> spare_events_;
 };

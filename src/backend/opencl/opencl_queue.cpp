@@ -20,14 +20,73 @@ class OpenClMemory final : public PooledMemory<cl::Buffer> {
 
 OpenClMemory& as_opencl(Memory& memory) { return static_cast<OpenClMemory&>(memory); }
 
+/// Host memory for writes that the device has yet to make, and the largest that goes there: tables of instances and lights, meshes of some
+/// hundred thousand vertices. Copying more twice costs more than it gains.
+constexpr std::size_t staging_bytes = std::size_t(32) << 20;
+constexpr std::size_t largest_staged_bytes = std::size_t(8) << 20;
+
+/// Whether a command has ended. Throws if it failed.
+bool has_ended(const cl::Event& event) {
+    const cl_int status = event.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>();
+    if (status < 0) throw cl::Error(status, "a command that was enqueued");
+    return status == CL_COMPLETE;
+}
+
+double time_of(const cl::Event& event) {
+    const auto start = event.getProfilingInfo<CL_PROFILING_COMMAND_START>();
+    const auto end = event.getProfilingInfo<CL_PROFILING_COMMAND_END>();
+    return static_cast<double>(end - start) * 1e-6;
+}
+
+class OpenClPendingRead final : public PendingRead {
+  public:
+    OpenClPendingRead(std::string what, const cl::CommandQueue& queue, const cl::Buffer& source, std::uint64_t size_bytes,
+                      void* target)
+        : what_(std::move(what)) {
+        queue.enqueueReadBuffer(source, CL_FALSE, 0, size_bytes, target, nullptr, &event_);
+    }
+    ~OpenClPendingRead() override {
+        try {
+            if (!is_done_) event_.wait();
+        } catch (const cl::Error&) {
+            // Nobody wants the bytes any more, and a command that failed writes none.
+        }
+    }
+
+    [[nodiscard]] bool is_ready() override {
+        return is_done_ || guarded(what_, [&] {
+                   return event_.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() <= CL_COMPLETE;  // or has failed, which wait() tells
+               });
+    }
+    void wait() override {
+        if (is_done_) return;
+        guarded(what_, [&] { event_.wait(); });
+        is_done_ = true;
+    }
+
+  private:
+    std::string what_;
+    cl::Event event_;
+    bool is_done_ = false;
+};
+
 }  // namespace
 
 OpenClQueue::OpenClQueue(std::shared_ptr<OpenClDevice> device, std::shared_ptr<OpenClPool> pool)
-    : device_(std::move(device)), pool_(std::move(pool)) {
+    : device_(std::move(device)), pool_(std::move(pool)), staged_(staging_bytes) {
     guarded("making a queue on " + device_->info().id, [&] {
         queue_ = cl::CommandQueue(device_->context(), device_->device(), CL_QUEUE_PROFILING_ENABLE);
         for (const char* name : kernel_names) kernels_.emplace_back(device_->program(), name);
     });
+}
+
+OpenClQueue::~OpenClQueue() {
+    try {
+        // The device may still have to fetch what is staged.
+        if (!staged_.empty()) queue_.finish();
+    } catch (const cl::Error& error) {
+        log_line(opencl_error("waiting for " + device_->info().id, error).what());
+    }
 }
 
 std::shared_ptr<Memory> OpenClQueue::allocate(std::uint64_t size_bytes, std::string_view name) {
@@ -75,13 +134,14 @@ void OpenClQueue::launch(Kernel kernel, std::uint32_t group_count, std::uint32_t
         }
         cl::Event event;
         const cl::size_type global = cl::size_type(group_count) * group_size;
+        is_idle_ = false;
         queue_.enqueueNDRangeKernel(object, cl::NullRange, cl::NDRange(global), cl::NDRange(group_size), nullptr,
                                     &event);
         clock_.add(std::move(event));
         if (settings().log_launch) log_line(what + ", " + std::to_string(group_count) + " x " + std::to_string(group_size));
         if (settings().synchronous) queue_.finish();
+        if (clock_.is_full()) clock_.collect_older([](const cl::Event& last) { last.wait(); }, time_of);
     });
-    if (clock_.is_full()) collect_events();
 }
 
 void OpenClQueue::write(Memory& target, std::uint64_t at, const void* source, std::uint64_t size_bytes) {
@@ -93,26 +153,55 @@ void OpenClQueue::write(Memory& target, std::uint64_t at, const void* source, st
         std::memcpy(whole.data() + at, source, size_bytes);
         return write(target, 0, whole.data(), whole.size());
     }
+    // Where there is nothing to wait for, waiting is cheaper than a copy; and a checker may take memory for unused too early.
+    if (!is_idle_ && size_bytes <= largest_staged_bytes && settings().pooling)
+        return write_staged(target, at, source, size_bytes);
     guarded("writing '" + target.name() + "'", [&] {
         queue_.enqueueWriteBuffer(as_opencl(target).buffer, CL_TRUE, at, size_bytes, source);
+    });
+    note_idle();
+}
+
+void OpenClQueue::write_staged(Memory& target, std::uint64_t at, const void* source, std::uint64_t size_bytes) {
+    if (!staging_) staging_ = std::make_unique_for_overwrite<std::byte[]>(staging_bytes);
+    guarded("writing '" + target.name() + "'", [&] {
+        staged_.use(size_bytes, has_ended, [](const cl::Event& oldest) { oldest.wait(); }, [&](std::size_t place) {
+            cl::Event event;
+            std::memcpy(staging_.get() + place, source, size_bytes);
+            queue_.enqueueWriteBuffer(as_opencl(target).buffer, CL_FALSE, at, size_bytes, staging_.get() + place, nullptr,
+                                      &event);
+            return event;
+        });
     });
 }
 
 void OpenClQueue::read(Memory& source, void* target, std::uint64_t size_bytes) {
     OpenClMemory& memory = as_opencl(source);
-    guarded("reading '" + source.name() + "'", [&] {
-        if (memory.host == target) {
+    if (memory.host == target) {
+        guarded("reading '" + source.name() + "'", [&] {
             void* mapped = queue_.enqueueMapBuffer(memory.buffer, CL_TRUE, CL_MAP_READ, 0, size_bytes);
             queue_.enqueueUnmapMemObject(memory.buffer, mapped);
             queue_.finish();
-        } else {
-            queue_.enqueueReadBuffer(memory.buffer, CL_TRUE, 0, size_bytes, target);
-        }
+        });
+    } else {
+        read_later(source, target, size_bytes)->wait();
+    }
+    note_idle();
+}
+
+std::unique_ptr<PendingRead> OpenClQueue::read_later(Memory& source, void* target, std::uint64_t size_bytes) {
+    const std::string what = "reading '" + source.name() + "'";
+    return guarded(what, [&] {
+        is_idle_ = false;
+        auto pending = std::make_unique<OpenClPendingRead>(what, queue_, as_opencl(source).buffer, size_bytes, target);
+        queue_.flush();  // so that the device begins before anybody waits
+        return pending;
     });
 }
 
 void OpenClQueue::copy(Memory& source, std::uint64_t source_at, Memory& target, std::uint64_t target_at,
                        std::uint64_t size_bytes) {
+    is_idle_ = false;
     guarded("copying '" + source.name() + "' to '" + target.name() + "'", [&] {
         queue_.enqueueCopyBuffer(as_opencl(source).buffer, as_opencl(target).buffer, source_at, target_at, size_bytes);
     });
@@ -124,6 +213,7 @@ void OpenClQueue::fill(Memory& target, std::uint32_t pattern, std::uint64_t size
         const std::vector<std::uint32_t> words(size_bytes / sizeof pattern, pattern);
         return write(target, 0, words.data(), size_bytes);
     }
+    is_idle_ = false;
     guarded("filling '" + target.name() + "'", [&] {
         queue_.enqueueFillBuffer(as_opencl(target).buffer, pattern, 0, size_bytes);
     });
@@ -131,6 +221,12 @@ void OpenClQueue::fill(Memory& target, std::uint32_t pattern, std::uint64_t size
 
 void OpenClQueue::finish() {
     guarded("waiting for " + device_->info().id, [&] { queue_.finish(); });
+    note_idle();
+}
+
+void OpenClQueue::note_idle() {
+    is_idle_ = true;
+    guarded("writing to " + device_->info().id, [&] { staged_.retire(has_ended); });
 }
 
 std::vector<StageTime> OpenClQueue::take_timings() {
@@ -140,13 +236,7 @@ std::vector<StageTime> OpenClQueue::take_timings() {
 
 void OpenClQueue::collect_events() {
     finish();
-    guarded("reading profiling data", [&] {
-        clock_.collect([](const cl::Event& event) {
-            const auto start = event.getProfilingInfo<CL_PROFILING_COMMAND_START>();
-            const auto end = event.getProfilingInfo<CL_PROFILING_COMMAND_END>();
-            return static_cast<double>(end - start) * 1e-6;
-        });
-    });
+    guarded("reading profiling data", [&] { clock_.collect(time_of); });
 }
 
 }  // namespace setka::backend

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What does a queue mean in OpenCL? An in-order command queue with profiling, its kernel objects and its pool of buffers.
+/// What does a queue mean in OpenCL? An in-order command queue with profiling, its kernel objects, its pool of buffers, and host memory for
+/// writes that are on their way.
 #pragma once
 
 #include <memory>
@@ -8,12 +9,14 @@
 
 #include "backend/opencl/opencl_device.hpp"
 #include "backend/stage_clock.hpp"
+#include "backend/staging_ring.hpp"
 
 namespace setka::backend {
 
 class OpenClQueue final : public Queue {
   public:
     OpenClQueue(std::shared_ptr<OpenClDevice> device, std::shared_ptr<OpenClPool> pool);
+    ~OpenClQueue() override;
 
     [[nodiscard]] std::shared_ptr<Memory> allocate(std::uint64_t size_bytes, std::string_view name) override;
     [[nodiscard]] std::shared_ptr<Memory> wrap_host(void* data, std::uint64_t size_bytes, bool read_only,
@@ -22,6 +25,8 @@ class OpenClQueue final : public Queue {
                 const Arguments& arguments) override;
     void write(Memory& target, std::uint64_t at, const void* source, std::uint64_t size_bytes) override;
     void read(Memory& source, void* target, std::uint64_t size_bytes) override;
+    [[nodiscard]] std::unique_ptr<PendingRead> read_later(Memory& source, void* target,
+                                                          std::uint64_t size_bytes) override;
     void copy(Memory& source, std::uint64_t source_at, Memory& target, std::uint64_t target_at,
               std::uint64_t size_bytes) override;
     void fill(Memory& target, std::uint32_t pattern, std::uint64_t size_bytes) override;
@@ -31,12 +36,18 @@ class OpenClQueue final : public Queue {
 
   private:
     void collect_events();
+    /// Everything that was enqueued is done: staged writes that failed tell so now.
+    void note_idle();
+    void write_staged(Memory& target, std::uint64_t at, const void* source, std::uint64_t size_bytes);
 
     std::shared_ptr<OpenClDevice> device_;
     std::shared_ptr<OpenClPool> pool_;
     cl::CommandQueue queue_;
     std::vector<cl::Kernel> kernels_;
     StageClock<cl::Event> clock_;
+    std::unique_ptr<std::byte[]> staging_;  ///< made when it is first needed
+    StagingRing<cl::Event> staged_;
+    bool is_idle_ = true;  ///< nothing was enqueued since something waited for all there was
 };
 
 }  // namespace setka::backend
