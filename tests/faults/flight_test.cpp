@@ -186,7 +186,7 @@ TEST_P(InFlightView, EditsOfTheNextFrameDoNotShowInTheLast) {
 }
 
 TEST_P(InFlight, APictureOfSeveralBatches) {
-    const setka::RenderOptions options{.width = 2048, .height = support::sized(1500u, 2u)};
+    const setka::RenderOptions options{.width = 2048, .height = support::sized(1500u, 100u)};
     Frames frames(device(), options);
     const setka::Image expected = frames.render(1);
     PendingImage first = frames.render_later(1), second = frames.render_later(2);
