@@ -174,9 +174,7 @@ std::shared_ptr<backend::PendingRead> Queue::read_later(const std::shared_ptr<ba
                                                         std::size_t size_bytes) {
     if (size_bytes == 0) return nullptr;
     impl_->check_stop("reading '" + source->name() + "'");
-    std::shared_ptr<backend::PendingRead> read = impl_->read_later(*source, target, size_bytes);
-    if (settings().synchronous) read->wait();
-    return read;
+    return impl_->read_later(*source, target, size_bytes);
 }
 
 bool detail::is_ready(backend::PendingRead* read) { return !read || read->is_ready(); }
