@@ -138,11 +138,13 @@ class GridBuilder {
     /// sorting, on devices without doubles, where memory is short, and where a stop can be requested of the queue it enqueues the
     /// transform and the bounds alone, and plan() the rest.
     [[nodiscard]] virtual StartedGrid start(Queue& queue, const DeviceScene& scene) const = 0;
-    /// What the tables need; waits, once as a rule, and again for a sheet or a line, for very many large triangles, and where memory is short.
+    /// What the tables need; waits, as a rule once and for nothing that was enqueued after start(), and again for a sheet or a line, for very many
+    /// large triangles, and where memory is short.
     /// The queue must be that of start(), and the builder one with its options. Throws InvalidData for a triangle that is not finite in world space, OutOfMemory if the
     /// finished build would not fit the device's budget, and InvalidArgument if `started` was planned before.
     [[nodiscard]] virtual GridPlan plan(Queue& queue, StartedGrid started) const = 0;
-    [[nodiscard]] GridPlan plan(Queue& queue, const DeviceScene& scene) const { return plan(queue, start(queue, scene)); }
+    /// Both.
+    [[nodiscard]] virtual GridPlan plan(Queue& queue, const DeviceScene& scene) const = 0;
     /// The tables.
     [[nodiscard]] virtual Grid build(Queue& queue, GridPlan plan) const = 0;
     [[nodiscard]] Grid build(Queue& queue, const DeviceScene& scene) const { return build(queue, plan(queue, scene)); }

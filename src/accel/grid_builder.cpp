@@ -24,6 +24,7 @@ struct GridStart {
     GridLimits limits;
     StartedTransform transform;
     ScatteredCount count;
+    std::optional<Download<std::uint32_t>> report;  ///< on its way, so that plan() waits for nothing that is enqueued later
 };
 
 /// What a plan keeps for the build: one of two.
@@ -51,16 +52,14 @@ class UniformGridBuilder final : public GridBuilder {
     explicit UniformGridBuilder(const GridOptions& options) : options_(options) { check_options(options); }
 
     [[nodiscard]] StartedGrid start(Queue& queue, const DeviceScene& scene) const override {
-        const GridLimits limits(queue.device(), options_);
-        StartedGrid started;
-        started.start_ = std::make_shared<GridStart>(GridStart{limits, start_transform(queue, scene), {}});
-        GridStart& start = *started.start_;
-        if (options_.cell_tables == CellTables::Scatter)
-            start.count = start_count(queue, start.transform, options_, limits);
+        StartedGrid started = begin(queue, scene);
+        started.start_->report = queue.download_later(started.start_->transform.report);
         return started;
     }
 
-    using GridBuilder::plan;
+    [[nodiscard]] GridPlan plan(Queue& queue, const DeviceScene& scene) const override {
+        return plan(queue, begin(queue, scene));
+    }
     [[nodiscard]] GridPlan plan(Queue& queue, StartedGrid started) const override {
         const auto start = std::exchange(started.start_, {});
         if (!start)
@@ -69,7 +68,7 @@ class UniformGridBuilder final : public GridBuilder {
         const GridLimits& limits = start->limits;
         GridPlan plan;
         plan.geometry_ = std::move(start->transform.geometry);
-        const Report words = read_report(queue, std::exchange(start->transform.report, {}));
+        const Report words = take_report(queue, *start);
         take_bounds(words, plan.geometry_);
         const GridResolution resolution =
             grid_resolution(plan.geometry_.bounds, plan.geometry_.triangle_count, options_);
@@ -103,6 +102,25 @@ class UniformGridBuilder final : public GridBuilder {
     }
 
   private:
+    /// What start() does, but for the report.
+    [[nodiscard]] StartedGrid begin(Queue& queue, const DeviceScene& scene) const {
+        const GridLimits limits(queue.device(), options_);
+        StartedGrid started;
+        started.start_ = std::make_shared<GridStart>(GridStart{limits, start_transform(queue, scene), {}, {}});
+        GridStart& start = *started.start_;
+        if (options_.cell_tables == CellTables::Scatter)
+            start.count = start_count(queue, start.transform, options_, limits);
+        return started;
+    }
+
+    [[nodiscard]] static Report take_report(Queue& queue, GridStart& start) {
+        const auto report = std::exchange(start.transform.report, {});
+        if (!start.report) return read_report(queue, report);
+        Report words{};
+        std::ranges::copy(start.report->get(), words.begin());
+        return words;
+    }
+
     /// Counts, and says how many bytes counting and building hold beside the world's triangles.
     [[nodiscard]] std::uint64_t count(Queue& queue, GridPlan& plan, const GridLimits& limits, ScatteredCount started,
                                       const Report& words) const {

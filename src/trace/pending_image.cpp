@@ -14,8 +14,8 @@ constexpr std::uint64_t most_on_the_way_bytes = std::uint64_t(128) << 20;
 
 }  // namespace
 
-PendingImage::Impl::Impl(const RenderOptions& options, const RenderStatistics& statistics)
-    : image_{options.width, options.height, {}, {}}, statistics_(statistics) {
+PendingImage::Impl::Impl(const RenderOptions& options, const RenderStatistics& statistics, Fetch fetch)
+    : fetch_(fetch), image_{options.width, options.height, {}, {}}, statistics_(statistics) {
     const std::size_t pixels = std::size_t(options.width) * options.height;
     if (options.pixels == Pixels::LinearAndSrgb) image_.linear.resize(pixels);
     image_.srgb.resize(3 * pixels);
@@ -23,6 +23,7 @@ PendingImage::Impl::Impl(const RenderOptions& options, const RenderStatistics& s
 
 template <typename T>
 void PendingImage::Impl::add(Queue& queue, const Buffer<T>& source, std::span<T> target) {
+    if (fetch_ == Fetch::Now) return queue.download(source, target);
     auto read = queue.read_later(source, target);
     reads_.push_back({std::move(read), target.size_bytes()});
     on_the_way_bytes_ += target.size_bytes();
@@ -36,6 +37,11 @@ void PendingImage::Impl::add_pixels(Queue& queue, std::uint32_t first, const Buf
                                     const Buffer<std::uint8_t>& codes) {
     if (!image_.linear.empty()) add(queue, linear, std::span(image_.linear).subspan(first, linear.size()));
     add(queue, codes, std::span(image_.srgb).subspan(std::size_t(first) * 3, codes.size()));
+}
+
+void PendingImage::Impl::add_shadow_rays(Queue& queue, const Buffer<std::uint32_t>& numbers) {
+    if (fetch_ == Fetch::Later) return shadow_rays_.push_back(queue.download_later(numbers));
+    for (const std::uint32_t n : queue.download(numbers)) statistics_.shadow_rays += n;
 }
 
 bool PendingImage::Impl::is_ready() const {

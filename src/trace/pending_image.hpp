@@ -29,17 +29,21 @@ class Timer {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
+/// How a picture comes to the host. Some drivers take longer for what is not waited for: NVIDIA's OpenCL a fifth of a frame.
+enum class Fetch {
+    Now,    ///< each part is waited for
+    Later,  ///< nothing is
+};
+
 class PendingImage::Impl {
   public:
     /// `statistics` is what is known already.
-    Impl(const RenderOptions& options, const RenderStatistics& statistics);
+    Impl(const RenderOptions& options, const RenderStatistics& statistics, Fetch fetch);
 
-    /// Enqueues the copy of these pixels to places `first` and following.
+    /// Fetches these pixels to places `first` and following.
     void add_pixels(Queue& queue, std::uint32_t first, const Buffer<Float3>& linear, const Buffer<std::uint8_t>& codes);
-    /// Enqueues the copy of numbers that the statistics add up.
-    void add_shadow_rays(Queue& queue, const Buffer<std::uint32_t>& numbers) {
-        shadow_rays_.push_back(queue.download_later(numbers));
-    }
+    /// Fetches numbers that the statistics add up.
+    void add_shadow_rays(Queue& queue, const Buffer<std::uint32_t>& numbers);
 
     [[nodiscard]] bool is_ready() const;
     /// Waits, and completes the statistics.
@@ -54,6 +58,7 @@ class PendingImage::Impl {
     template <typename T>
     void add(Queue& queue, const Buffer<T>& source, std::span<T> target);
 
+    Fetch fetch_;
     Image image_;
     std::deque<Read> reads_;  ///< into image_, so they go before it
     std::uint64_t on_the_way_bytes_ = 0;

@@ -110,7 +110,7 @@ class ProgressiveRender::Impl {
 
     void finish() { add(passes_); }
 
-    [[nodiscard]] std::unique_ptr<PendingImage::Impl> image_later() {
+    [[nodiscard]] std::unique_ptr<PendingImage::Impl> fetch(Fetch fetch) {
         if (done_ == 0)
             throw Error(ErrorCategory::InvalidArgument,
                         "a picture of 0 passes was asked for; at least one must have been added");
@@ -118,7 +118,7 @@ class ProgressiveRender::Impl {
         statistics.primary_rays = pixels_ * done_;
         statistics.secondary_rays = counts_.secondary;
         statistics.shadow_rays = counts_.shadow;
-        auto pending = std::make_unique<PendingImage::Impl>(options_, statistics);
+        auto pending = std::make_unique<PendingImage::Impl>(options_, statistics, fetch);
         const Timer timer(pending->statistics().wall_ms);
         if (ViewPasses::is_measure(options_.view)) store_measures(*pending);
         else store_colours(*pending);
@@ -262,12 +262,12 @@ std::uint32_t ProgressiveRender::passes_done() const noexcept { return impl_->pa
 void ProgressiveRender::add_pass() { impl_->add(1); }
 void ProgressiveRender::finish() { impl_->finish(); }
 Image ProgressiveRender::image() {
-    PendingImage pending = image_later();
+    PendingImage pending(impl_->fetch(Fetch::Now));
     Image image = pending.get();
     impl_->note(pending.statistics());
     return image;
 }
-PendingImage ProgressiveRender::image_later() { return PendingImage(impl_->image_later()); }
+PendingImage ProgressiveRender::image_later() { return PendingImage(impl_->fetch(Fetch::Later)); }
 const RenderStatistics& ProgressiveRender::statistics() const noexcept { return impl_->statistics(); }
 
 }  // namespace setka

@@ -19,8 +19,9 @@ Renderer::Renderer(const RenderOptions& options) : options_(options) { check_opt
 Image Renderer::render(Queue& queue, const DeviceScene& scene, const Structure& structure,
                        const Camera& camera) {
     statistics_ = {};
-    PendingImage picture = render_later(queue, scene, structure, camera);
-    Image image = picture.get();
+    ProgressiveRender picture(queue, scene, structure, camera, options_);
+    picture.finish();
+    Image image = picture.image();
     statistics_ = picture.statistics();
     return image;
 }

@@ -184,7 +184,9 @@ void OpenClQueue::read(Memory& source, void* target, std::uint64_t size_bytes) {
             queue_.finish();
         });
     } else {
-        read_later(source, target, size_bytes)->wait();
+        // NVIDIA's driver takes longer to read without blocking and to wait for that.
+        guarded("reading '" + source.name() + "'",
+                [&] { queue_.enqueueReadBuffer(memory.buffer, CL_TRUE, 0, size_bytes, target); });
     }
     note_idle();
 }
