@@ -168,6 +168,7 @@ class Download {
     Download(Download&& other) noexcept
         : elements_(std::move(other.elements_)), read_(std::move(other.read_)), is_there_(std::exchange(other.is_there_, false)) {}
     Download& operator=(Download&& other) noexcept {
+        if (this == &other) return *this;
         read_ = std::move(other.read_);  // first, since the device may still write the elements
         elements_ = std::move(other.elements_);
         is_there_ = std::exchange(other.is_there_, false);
@@ -194,7 +195,8 @@ class Download {
 };
 
 /// One in-order stream of work on a device: what is enqueued later sees what was enqueued earlier. Calls return before the
-/// device is done unless they say otherwise. One queue belongs to one host thread at a time.
+/// device is done unless they say otherwise. One queue belongs to one host thread at a time. What another queue is to use, uploads too, needs
+/// finish() first.
 class Queue {
   public:
     /// A buffer of `size` elements with undefined contents. `name` appears in memory errors.
@@ -264,7 +266,7 @@ class Queue {
         return download;
     }
 
-    /// Waits until everything enqueued so far is done. Errors of asynchronous work surface here, in download() and in Download::get().
+    /// Waits until everything enqueued so far is done. Errors of asynchronous work surface here and in download(); those of a Download in its get().
     void finish();
 
     /// Device time by stage since the last call, in order of first use; waits for what was enqueued.

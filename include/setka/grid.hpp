@@ -47,7 +47,7 @@ struct GridStart;  // opaque to users
 struct GridCount;  // opaque to users
 
 /// A grid of which nothing is known yet: its scene is being transformed, and as a rule its cells are being counted, on the device. The scene
-/// may be edited meanwhile. Makes one plan; one that is dropped gives back what it holds.
+/// may be edited meanwhile. Makes one plan; one that is dropped waits until it is counted and gives back what it holds.
 class StartedGrid {
   public:
     StartedGrid() = default;
@@ -139,8 +139,8 @@ class GridBuilder {
     /// transform and the bounds alone, and plan() the rest.
     [[nodiscard]] virtual StartedGrid start(Queue& queue, const DeviceScene& scene) const = 0;
     /// What the tables need; waits, as a rule once and for nothing that was enqueued after start(), and again for a sheet or a line, for very many
-    /// large triangles, and where memory is short.
-    /// The queue must be that of start(), and the builder one with its options. Throws InvalidData for a triangle that is not finite in world space, OutOfMemory if the
+    /// large triangles, where memory is short, and where start() could not enqueue the count.
+    /// Throws InvalidArgument for another queue than that of start(), and for a builder with other cell tables than its; other options only cost a second count. Throws InvalidData for a triangle that is not finite in world space, OutOfMemory if the
     /// finished build would not fit the device's budget, and InvalidArgument if `started` was planned before.
     [[nodiscard]] virtual GridPlan plan(Queue& queue, StartedGrid started) const = 0;
     /// Both.

@@ -126,7 +126,8 @@ class Renderer {
     /// `scene` and `structure` may be freed as soon as the call returns.
     /// What has to be known on the way is waited for: the number of rays that go on, for each level, where some material mirrors or lets light
     /// through; whether a structure that was loaded fits the scene; sums that do not fit the device's memory; and what image_later() waits for.
-    /// A scene without such materials, on a structure that was built of it, waits for nothing in a shaded picture of up to 8 million pixels.
+    /// A scene without such materials, on a structure that was built of it, waits for nothing in a shaded picture of up to 8 million pixels
+    /// and 64 batches of two million rays.
     [[nodiscard]] PendingImage render_later(Queue& queue, const DeviceScene& scene, const Structure& structure,
                                             const Camera& camera) const;
     /// Of the last render().

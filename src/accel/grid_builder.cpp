@@ -21,7 +21,8 @@ namespace setka {
 
 /// What is under way.
 struct GridStart {
-    GridLimits limits;
+    const backend::Queue* queue = nullptr;
+    CellTables cell_tables{};
     StartedTransform transform;
     ScatteredCount count;
     std::optional<Download<std::uint32_t>> report;  ///< on its way, so that plan() waits for nothing that is enqueued later
@@ -65,7 +66,17 @@ class UniformGridBuilder final : public GridBuilder {
         if (!start)
             throw Error(ErrorCategory::InvalidArgument,
                         "started was planned or moved from before; it makes one plan");
-        const GridLimits& limits = start->limits;
+        if (start->queue != &queue.impl())
+            throw Error(ErrorCategory::InvalidArgument, "started is of another queue; a grid is planned on the queue that it was started on");
+        if (start->cell_tables != options_.cell_tables)
+            throw Error(ErrorCategory::InvalidArgument,
+                        std::string("started has cell tables '") + to_string(start->cell_tables) + "', the builder '" +
+                            to_string(options_.cell_tables) + "'; they must have the same options");
+        const WorldGeometry& world = start->transform.geometry;
+        // Since start() other things may have come and gone.
+        const GridLimits limits(queue.device(), options_,
+                                world.triangles.size_bytes() +
+                                    started_bytes(queue.device(), world.triangle_count, start->count));
         GridPlan plan;
         plan.geometry_ = std::move(start->transform.geometry);
         const Report words = take_report(queue, *start);
@@ -106,7 +117,8 @@ class UniformGridBuilder final : public GridBuilder {
     [[nodiscard]] StartedGrid begin(Queue& queue, const DeviceScene& scene) const {
         const GridLimits limits(queue.device(), options_);
         StartedGrid started;
-        started.start_ = std::make_shared<GridStart>(GridStart{limits, start_transform(queue, scene), {}, {}});
+        started.start_ = std::make_shared<GridStart>(
+            GridStart{&queue.impl(), options_.cell_tables, start_transform(queue, scene), {}, {}});
         GridStart& start = *started.start_;
         if (options_.cell_tables == CellTables::Scatter)
             start.count = start_count(queue, start.transform, options_, limits);

@@ -22,8 +22,8 @@ std::string bytes_text(std::uint64_t bytes) {
 
 }  // namespace
 
-GridLimits::GridLimits(const Device& device, const GridOptions& options)
-    : device_(device), options_(options), held_before_bytes_(device.memory_in_use_bytes()) {}
+GridLimits::GridLimits(const Device& device, const GridOptions& options, std::uint64_t own_bytes)
+    : device_(device), options_(options), held_before_bytes_(device.memory_in_use_bytes() - own_bytes) {}
 
 void GridLimits::check_cells(const GridResolution& resolution) const {
     const std::uint64_t cells = resolution.cell_count(), slots = counter_count(resolution.dims);

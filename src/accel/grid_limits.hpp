@@ -15,8 +15,8 @@ inline constexpr std::uint64_t most_entries = std::numeric_limits<std::int32_t>:
 
 class GridLimits {
   public:
-    /// From here on, what the device holds is held by the build.
-    GridLimits(const Device& device, const GridOptions& options);
+    /// What the device holds now was held before the build, but for `own_bytes` that are the build's; what comes from here on is the build's.
+    GridLimits(const Device& device, const GridOptions& options, std::uint64_t own_bytes = 0);
 
     /// Refuses a grid whose cells alone cannot be held, before any triangle is counted.
     void check_cells(const GridResolution& resolution) const;

@@ -181,6 +181,10 @@ std::optional<ScatteredCount> finish_count(Queue& queue, const WorldGeometry& ge
     return count;
 }
 
+std::uint64_t started_bytes(const Device& device, std::uint32_t triangles, const ScatteredCount& started) {
+    return started.room.blocks == 0 ? report_bytes : count_bytes(device, triangles, started.room);
+}
+
 std::uint64_t scattered_bytes(const Device& device, const ::SetkaGridHeader& header,
                               const ScatteredCount& count) {
     return count_bytes(device, header.triangle_count, count.room) +

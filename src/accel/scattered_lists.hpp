@@ -47,6 +47,9 @@ struct ScatteredCount {
                                                          ScatteredCount started, const Report& words,
                                                          std::uint64_t& held_bytes);
 
+/// The bytes that start_count() holds, the report included, world triangles not.
+[[nodiscard]] std::uint64_t started_bytes(const Device& device, std::uint32_t triangles, const ScatteredCount& started);
+
 /// The bytes that build_scattered() holds, tables included, world triangles not.
 [[nodiscard]] std::uint64_t scattered_bytes(const Device& device, const ::SetkaGridHeader& header,
                                             const ScatteredCount& count);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -65,12 +66,14 @@ class StageClock {
 
     template <typename TimeOf>
     void collect_first(std::size_t count, TimeOf time_ms) {
+        // What cannot be read is not asked for again.
         const auto end = pending_.begin() + static_cast<std::ptrdiff_t>(count);
-        for (auto it = pending_.begin(); it != end; ++it) {
-            stages_[it->stage].time_ms += time_ms(it->span);
-            ++stages_[it->stage].launches;
-        }
+        std::vector<Pending> taken(std::make_move_iterator(pending_.begin()), std::make_move_iterator(end));
         pending_.erase(pending_.begin(), end);
+        for (Pending& pending : taken) {
+            stages_[pending.stage].time_ms += time_ms(pending.span);
+            ++stages_[pending.stage].launches;
+        }
     }
 
     /// Launches before the first begin_stage are "other".

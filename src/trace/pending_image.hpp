@@ -29,7 +29,7 @@ class Timer {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// How a picture comes to the host. Some drivers take longer for what is not waited for: NVIDIA's OpenCL a fifth of a frame.
+/// How a picture comes to the host. Some drivers take longer for what is not waited for, a fifth of a frame.
 enum class Fetch {
     Now,    ///< each part is waited for
     Later,  ///< nothing is

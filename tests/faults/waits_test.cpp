@@ -230,4 +230,53 @@ TEST_P(Started, LeavesErrorsOfTheSceneToThePlan) {
     EXPECT_EQ(device().memory_in_use_bytes(), before);
 }
 
+/// The budget is that of the moment at which the plan is made: what is given back after start() is there again.
+TEST_P(Started, CountsWhatIsHeldWhenItIsPlanned) {
+    const setka::Scene scene = support::ball(support::sized(20000u, 2000u));
+    const auto builder = setka::make_grid_builder();
+    std::uint64_t scene_bytes = 0, started_bytes = 0, peak_bytes = 0;
+    std::vector<std::uint32_t> references;
+    {
+        const setka::DeviceScene on_device(queue(), scene);
+        scene_bytes = device().memory_in_use_bytes();
+        setka::StartedGrid started = builder->start(queue(), on_device);
+        started_bytes = device().memory_in_use_bytes() - scene_bytes;
+        setka::GridPlan plan = builder->plan(queue(), std::move(started));
+        peak_bytes = plan.peak_bytes();
+        references = queue().download(builder->build(queue(), std::move(plan)).compact_tables().references);
+    }
+    ASSERT_GT(peak_bytes, started_bytes);
+    const setka::Device limited = setka::Device::open(GetParam(), {.memory_budget_bytes = scene_bytes + peak_bytes});
+    setka::Queue other = limited.make_queue();
+    const setka::DeviceScene on_device(other, scene);
+    auto last_frame = other.make_buffer<std::uint8_t>(peak_bytes - started_bytes, "a grid");
+    setka::StartedGrid started = builder->start(other, on_device);
+    last_frame = {};
+    setka::GridPlan plan = builder->plan(other, std::move(started));
+    EXPECT_EQ(plan.peak_bytes(), peak_bytes);
+    EXPECT_EQ(other.download(builder->build(other, std::move(plan)).compact_tables().references), references);
+}
+
+TEST_P(Started, IsPlannedWhereItWasStarted) {
+    const setka::DeviceScene on_device(queue(), support::ball(500));
+    const auto sorting = setka::make_grid_builder({.cell_tables = CellTables::RunBoundaries});
+    const auto builder = setka::make_grid_builder();
+    setka::Queue other = device().make_queue();
+    const auto refused = [](const auto& action, const char* phrase) {
+        try {
+            action();
+            ADD_FAILURE() << "nothing was thrown";
+        } catch (const setka::Error& error) {
+            EXPECT_EQ(error.category(), setka::ErrorCategory::InvalidArgument);
+            EXPECT_THAT(error.what(), ::testing::HasSubstr(phrase));
+        }
+    };
+    refused([&] { (void)builder->plan(queue(), sorting->start(queue(), on_device)); }, "'run-boundaries', the builder 'scatter'");
+    refused([&] { (void)sorting->plan(queue(), builder->start(queue(), on_device)); }, "'scatter', the builder 'run-boundaries'");
+    refused([&] { (void)builder->plan(other, builder->start(queue(), on_device)); }, "another queue");
+    const auto denser = setka::make_grid_builder({.density = 16});
+    EXPECT_EQ(denser->build(queue(), denser->plan(queue(), builder->start(queue(), on_device))).digest(queue()),
+              denser->build(queue(), on_device).digest(queue()));
+}
+
 }  // namespace

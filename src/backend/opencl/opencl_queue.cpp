@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstring>
+#include <optional>
 #include <vector>
 
 #include "backend/pooled_memory.hpp"
@@ -25,10 +26,13 @@ OpenClMemory& as_opencl(Memory& memory) { return static_cast<OpenClMemory&>(memo
 constexpr std::size_t staging_bytes = std::size_t(32) << 20;
 constexpr std::size_t largest_staged_bytes = std::size_t(8) << 20;
 
-/// Whether a command has ended. Throws if it failed.
+/// Whether a write has ended. Throws if it failed: always DeviceFailed, since whoever asked for it has gone on, and nobody who has
+/// less to do next time makes up for it.
 bool has_ended(const cl::Event& event) {
     const cl_int status = event.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>();
-    if (status < 0) throw cl::Error(status, "a command that was enqueued");
+    if (status < 0)
+        throw Error(ErrorCategory::DeviceFailed,
+                    opencl_error("an earlier write", cl::Error(status, "a command that was enqueued")).what());
     return status == CL_COMPLETE;
 }
 
@@ -228,7 +232,16 @@ void OpenClQueue::finish() {
 
 void OpenClQueue::note_idle() {
     is_idle_ = true;
-    guarded("writing to " + device_->info().id, [&] { staged_.retire(has_ended); });
+    std::optional<Error> first;
+    for (bool is_over = false; !is_over;) {
+        try {
+            guarded("writing to " + device_->info().id, [&] { staged_.retire(has_ended); });
+            is_over = true;
+        } catch (const Error& error) {  // and that place is forgotten
+            if (!first) first = error;
+        }
+    }
+    if (first) throw Error(*first);
 }
 
 std::vector<StageTime> OpenClQueue::take_timings() {
