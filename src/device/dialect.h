@@ -13,7 +13,7 @@
  *   SK_ALIGNED(bytes)        before the name of a struct whose members are loaded at once
  *   SK_WIDTH                 how many rays a work-item traces side by side: 1 where work-items run in step, 8 on CPUs whose drivers
  *                            compile vectors well
- *   SK_TEAM                  how many work-items run in step: 1, or a power of two up to 64 (an integer for #if)
+ *   SK_TEAM                  how many work-items run in step: 1, or a power of two up to 32 (an integer for #if)
  *   SK_DOUBLE                whether there is `double`, of which + - * / and conversions are correctly rounded too: only what the host does
  *                            again and compares may depend on it (an integer for #if)
  *   SK_BARRIER()             all work-items of the group; orders local memory; in uniform control flow only
@@ -45,6 +45,9 @@
 #if !defined(SK_KERNEL) || !defined(SK_TEAM_KERNEL) || !defined(SK_TEAM) || !defined(SK_FUNCTION) || !defined(SK_GLOBAL) || !defined(SK_LOCAL) || \
     !defined(SK_LOCAL_STORAGE) || !defined(SK_RESTRICT) || !defined(SK_BARRIER) || !defined(SK_WIDTH) || !defined(SK_DOUBLE) || !defined(SK_ALIGNED)
 #error "include a platform.h before dialect.h"
+#endif
+#if SK_TEAM > 32
+#error "the walk of a team keeps a bit for each member in a sk_u32"
 #endif
 
 #include "setka/layout.h"

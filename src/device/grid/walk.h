@@ -184,6 +184,8 @@ SK_FUNCTION sk_search sk_move_on(SetkaGridHeader grid, sk_grid_tables tables, sk
 
 /** The most triangles of a list that are tested in one round: one bit each. */
 #define SK_ROUND 32u
+/** Rows of SK_TEAM pairs in which a part can begin: all that there are, or the first of a team of one. */
+#define SK_FIRST_ROWS (SK_ROUND * (SK_TEAM - 1u) / SK_TEAM + 1u)
 /** Added to a round's total by who walks on without a list, and by who has one, besides its triangles. */
 #define SK_WITHOUT_LIST (1u << 24)
 #define SK_WITH_LIST (1u << 16)
@@ -199,44 +201,67 @@ typedef struct SK_ALIGNED(8) sk_part {
 /**
  * What the members of a team share: SK_TEAM work-items that run in step. Each walks with a ray of its own, but the triangles of
  * all their lists are tested by all of them, one pair of ray and triangle each, since lists differ in length and most members would wait
- * for the one with the longest. Totals and firsts are there twice, for this round and for the next.
+ * for the one with the longest. Totals and starts are there twice, for this round and for the next.
  */
 typedef struct sk_team {
     sk_viewpoint views[SK_TEAM];
     sk_part parts[SK_TEAM];
-    sk_u32 firsts[2][SK_TEAM];   /* of the parts, ascending; SK_NO_PART behind them */
+    sk_u32 starts[2][SK_ROUND];  /* bit m: a part begins with pair m of this row */
     sk_u32 candidates[SK_TEAM];  /* bit k: the member's ray may hit triangle k of its part */
     sk_u32 totals[2];
 } sk_team;
-
-#define SK_NO_PART 0xffffffffu
-
-/** The part of the round that pair p is in. */
-SK_FUNCTION sk_u32 sk_part_of(SK_SHARED const sk_u32* firsts, sk_u32 p) {
-    sk_u32 r = 0u;
-    for (sk_u32 step = SK_TEAM / 2u; step != 0u; step /= 2u)
-        if (firsts[r + step] <= p) r += step;
-    return r;
-}
 
 /** Puts `count` triangles of a list into the round's row, or says only that the member walks on. */
 SK_FUNCTION void sk_offer(SK_SHARED sk_team* team, sk_u32 phase, sk_u32 member, sk_u32 offset, sk_u32 count) {
     const sk_u32 before = sk_team_add(&team->totals[phase], count == 0u ? SK_WITHOUT_LIST : SK_WITH_LIST + count);
     if (count != 0u) {
         const sk_u32 part = SK_LISTS_OF(before), first = SK_PAIRS_OF(before);
-        team->firsts[phase][part] = first;
+        sk_team_or(&team->starts[phase][first / SK_TEAM], 1u << first % SK_TEAM);
         team->parts[part].shift = offset - first;
         team->parts[part].first_and_owner = first << 6 | member;
     }
 }
 
-/** Tests pair p of the round. */
-SK_FUNCTION void sk_test_pair(SK_SHARED sk_team* team, sk_u32 phase, sk_grid_tables tables, sk_u32 p) {
-    const sk_part part = team->parts[sk_part_of(team->firsts[phase], p)];
-    const sk_u32 owner = part.first_and_owner & 63u, k = p - (part.first_and_owner >> 6);
-    const sk_u32 number = tables.references[part.shift + p];
-    if (sk_may_pass(sk_view_triangle(team->views[owner], tables.triangles, number * 9u, 1u)))
-        sk_team_or(&team->candidates[owner], 1u << k);
+/** A pair of the round: whose ray it is, its triangle, and the bit of that in the owner's part. */
+typedef struct sk_ray_and_triangle {
+    sk_u32 owner, number, bit;
+} sk_ray_and_triangle;
+
+/** Pair p, which is one of part `index`. */
+SK_FUNCTION sk_ray_and_triangle sk_find_pair(SK_SHARED sk_team* team, sk_grid_tables tables, sk_u32 p, sk_u32 index) {
+    const sk_part part = team->parts[index];
+    sk_ray_and_triangle r;
+    r.owner = part.first_and_owner & 63u;
+    r.number = tables.references[part.shift + p];
+    r.bit = 1u << (p - (part.first_and_owner >> 6));
+    return r;
+}
+
+SK_FUNCTION void sk_test_pair(SK_SHARED sk_team* team, sk_grid_tables tables, sk_ray_and_triangle pair) {
+    if (sk_may_pass(sk_view_triangle(team->views[pair.owner], tables.triangles, pair.number * 9u, 1u)))
+        sk_team_or(&team->candidates[pair.owner], pair.bit);
+}
+
+/**
+ * Tests pair `member` of each row of the round's `count` pairs. The parts that have begun say which one a pair is in. The next
+ * row's pair is looked up before this row's is tested, so that one waits for memory while the other calculates.
+ */
+SK_FUNCTION void sk_test_pairs(SK_SHARED sk_team* team, sk_u32 phase, sk_u32 member, sk_u32 count, sk_grid_tables tables) {
+    const sk_u32 upto = 0xffffffffu >> (31u - member); /* this member's bit and those before */
+    sk_u32 row = 0u, starts = team->starts[phase][0], begun = 0u; /* in the rows before */
+    if (member < count) {
+        sk_ray_and_triangle next = sk_find_pair(team, tables, member, sk_popcount(starts & upto) - 1u);
+        for (sk_u32 p = member; p < count; p += SK_TEAM) {
+            const sk_ray_and_triangle pair = next;
+            if (p + SK_TEAM < count) {
+                begun += sk_popcount(starts);
+                row += 1u;
+                starts = team->starts[phase][row];
+                next = sk_find_pair(team, tables, p + SK_TEAM, begun + sk_popcount(starts & upto) - 1u);
+            }
+            sk_test_pair(team, tables, pair);
+        }
+    }
 }
 
 /**
@@ -259,8 +284,10 @@ SK_FUNCTION sk_walk sk_walk_grid(SK_SHARED sk_team* team, sk_u32 member, SetkaGr
     r.cost.steps = 0u;
     r.cost.tests = 0u;
     team->views[member] = sk_viewpoint_of(ray);
-    team->firsts[0][member] = SK_NO_PART;
-    team->firsts[1][member] = SK_NO_PART;
+    for (sk_u32 row = member; row < SK_ROUND; row += SK_TEAM) {
+        team->starts[0][row] = 0u;
+        team->starts[1][row] = 0u;
+    }
     if (member == 0u) {
         team->totals[0] = 0u;
         team->totals[1] = 0u;
@@ -280,8 +307,8 @@ SK_FUNCTION sk_walk sk_walk_grid(SK_SHARED sk_team* team, sk_u32 member, SetkaGr
         SK_TEAM_BARRIER();
         total = team->totals[phase];
         if (member == 0u) team->totals[phase ^ 1u] = 0u;
-        team->firsts[phase ^ 1u][member] = SK_NO_PART;
-        for (sk_u32 p = member; p < SK_PAIRS_OF(total); p += SK_TEAM) sk_test_pair(team, phase, tables, p);
+        for (sk_u32 row = member; row < SK_FIRST_ROWS; row += SK_TEAM) team->starts[phase ^ 1u][row] = 0u;
+        sk_test_pairs(team, phase, member, SK_PAIRS_OF(total), tables);
         SK_TEAM_BARRIER();
         /* The accurate test is long and few triangles come to it: each member does its own, the first of all of them together. */
         for (sk_u32 candidates = team->candidates[member]; candidates != 0u; candidates &= candidates - 1u) {
