@@ -3,10 +3,10 @@
 # rusticl, oclgrind, intel, pocl_wheel or all) and WORK (a folder that may be written to):
 #   runtime_environment   arguments for `cmake -E env`
 #   runtime_device        a regular expression that each line of `setka_digest devices` has to match
-# and ends the test, with a line that ctest takes for a skip, where the driver is not installed; SETKA_REQUIRE_RUNTIMES, names
-# separated by commas, makes that a failure.
+# and ends the test, with a line that ctest takes for a skip, where the driver is not installed or cannot compile for the machine;
+# SETKA_REQUIRE_RUNTIMES, names separated by commas, makes that a failure.
 
-# Ends the test: there is no such driver here.
+# Ends the test: there is no such driver here, or none that works.
 macro(runtime_missing why)
     string(REPLACE "," ";" runtimes_required "$ENV{SETKA_REQUIRE_RUNTIMES}")
     if(RUNTIME IN_LIST runtimes_required)
@@ -72,6 +72,14 @@ endforeach()
 macro(runtime_run)
     execute_process(COMMAND ${CMAKE_COMMAND} -E env ${runtime_environment} ${ARGN}
                     OUTPUT_VARIABLE output ERROR_VARIABLE error RESULT_VARIABLE result)
+endmacro()
+
+# Ends the test if the command failed because the driver's compiler is older than this machine's processor: LLVM then calls it
+# "generic", which Clang refuses for any program of anyone. (Our build options name no processor.)
+macro(runtime_missing_if_processor_is_unknown)
+    if(NOT result EQUAL 0 AND "${output}${error}" MATCHES "unknown target CPU '([^']*)'")
+        runtime_missing("its compiler does not know this machine's processor: unknown target CPU '${CMAKE_MATCH_1}'")
+    endif()
 endmacro()
 
 # Fails unless the driver's devices, and no others, are what the program sees.
