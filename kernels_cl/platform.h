@@ -20,7 +20,7 @@
 #define SK_ALIGNED(bytes) __attribute__((aligned(bytes)))
 #define SK_BARRIER() barrier(CLK_LOCAL_MEM_FENCE)
 
-/* Given by the host: 8 and 1 for CPUs, 1 and 32 for GPUs, else 1 and 1. No result depends on them. */
+/* Given by the host: 8 or 16 and 1 for CPUs, 1 and 32 for GPUs, else 1 and 1. No result depends on them. */
 #ifndef SK_WIDTH
 #define SK_WIDTH 1u
 #endif
@@ -64,24 +64,43 @@ typedef ulong sk_u64;
 
 #if SK_WIDTH > 1
 typedef float4 sk_f4;
+#if SK_WIDTH == 16u
+typedef float16 sk_fN;
+typedef int16 sk_iN;
+#define sk_make_f(...) ((float16)(__VA_ARGS__))
+#define sk_make_i(...) ((int16)(__VA_ARGS__))
+#define sk_store_f(v, p) vstore16(v, 0, p)
+#define sk_store_i(v, p) vstore16(v, 0, p)
+#define sk_lanes_to_float(i) convert_float16(i)
+#define sk_lanes_to_int(f) convert_int16(f)
+#define sk_lanes_as_int(f) as_int16(f)
+#define sk_lanes_as_float(i) as_float16(i)
+#else
 typedef float8 sk_fN;
 typedef int8 sk_iN;
-#define sk_make_f(a, b, c, d, e, f, g, h) ((float8)(a, b, c, d, e, f, g, h))
-#define sk_make_i(a, b, c, d, e, f, g, h) ((int8)(a, b, c, d, e, f, g, h))
-#define sk_lane(v, k) ((v).s##k)
-#define sk_load_f4(p) vload4(0, p)
+#define sk_make_f(...) ((float8)(__VA_ARGS__))
+#define sk_make_i(...) ((int8)(__VA_ARGS__))
 #define sk_store_f(v, p) vstore8(v, 0, p)
 #define sk_store_i(v, p) vstore8(v, 0, p)
 #define sk_lanes_to_float(i) convert_float8(i)
 #define sk_lanes_to_int(f) convert_int8(f)
 #define sk_lanes_as_int(f) as_int8(f)
 #define sk_lanes_as_float(i) as_float8(i)
-/* Compilers of OpenCL C are made of Clang. */
+#endif
+#define sk_load_f4(p) vload4(0, p)
+/* Compilers of OpenCL C are made of Clang, which has subscripts and shuffles of vectors. */
+#define sk_lane(v, k) ((v)[k])
 #define sk_shuffle __builtin_shufflevector
 #if __has_builtin(__builtin_reduce_or) /* Clang 15: one instruction */
 #define sk_lanes_or(i) __builtin_reduce_or(i)
 #else
-#define sk_lanes_or(i) ((((i).s0 | (i).s1) | ((i).s2 | (i).s3)) | (((i).s4 | (i).s5) | ((i).s6 | (i).s7)))
+#define sk_or_of_4(i) (((i).s0 | (i).s1) | ((i).s2 | (i).s3))
+#define sk_or_of_8(i) sk_or_of_4((i).lo | (i).hi)
+#if SK_WIDTH == 16u
+#define sk_lanes_or(i) sk_or_of_8((i).lo | (i).hi)
+#else
+#define sk_lanes_or(i) sk_or_of_8(i)
+#endif
 #endif
 #endif
 

@@ -27,17 +27,18 @@ void flush_denormals() {
     return kind == &workload::StandardRays::diffuse ? Coherence::Incoherent : Coherence::Coherent;
 }
 
-/// Pieces of 4 x 2 rays of a square picture one after the other: packets as setka's own, of such rays
+/// Tiles of four columns and `width` rays of a square picture one after the other: packets as setka's own, of such rays
 /// (RayBatch::row_length).
-[[nodiscard]] std::vector<Ray> in_pieces(const std::vector<Ray>& rays, std::uint32_t size) {
-    std::vector<Ray> pieces;
-    pieces.reserve(rays.size());
-    for (std::uint32_t top = 0; top < size; top += 2)
+[[nodiscard]] std::vector<Ray> in_tiles(const std::vector<Ray>& rays, std::uint32_t size, std::size_t width) {
+    const auto rows = static_cast<std::uint32_t>(width / 4);
+    std::vector<Ray> tiles;
+    tiles.reserve(rays.size());
+    for (std::uint32_t top = 0; top < size; top += rows)
         for (std::uint32_t left = 0; left < size; left += 4)
-            for (std::uint32_t y = top; y < std::min(top + 2, size); ++y)
+            for (std::uint32_t y = top; y < std::min(top + rows, size); ++y)
                 for (std::uint32_t x = left; x < std::min(left + 4, size); ++x)
-                    pieces.push_back(rays[std::size_t(y) * size + x]);
-    return pieces;
+                    tiles.push_back(rays[std::size_t(y) * size + x]);
+    return tiles;
 }
 
 }  // namespace
@@ -47,12 +48,13 @@ EmbreeSubject::EmbreeSubject(Target& target, const SceneCase& name, const Loaded
     : name_(name.to_string()), pool_(std::max(1u, std::thread::hardware_concurrency()), flush_denormals) {
     Subject reference(target, name, loaded, options, validator);
     Queue& queue = reference.queue();
+    const std::size_t width = packet_width();
     for (const auto kind : {&workload::StandardRays::primary, &workload::StandardRays::shadow,
                             &workload::StandardRays::diffuse}) {
         std::vector<Ray> rays = queue.download(reference.rays().*kind);
-        if (kind == trace_cases[0].rays) rays = in_pieces(rays, options.size);
-        batches_.push_back(
-            {kind, Tracer().closest_hit(queue, reference.grid(), rays), RayPackets(rays, coherence(kind))});
+        if (kind == trace_cases[0].rays) rays = in_tiles(rays, options.size, width);
+        batches_.push_back({kind, Tracer().closest_hit(queue, reference.grid(), rays),
+                            make_ray_packets(rays, coherence(kind), width)});
     }
 }
 
@@ -65,9 +67,9 @@ void EmbreeSubject::use(EmbreeQuality quality, const LoadedScene& loaded) {
         trace(what);
         const auto& [kind, expected, rays] = batch(what);
         const std::uint64_t differing = what.query == Query::Closest
-                                            ? count_disagreements(expected, rays.hits())
-                                            : count_disagreements(expected, rays.flags());
-        require_agreement(differing, rays.size(),
+                                            ? count_disagreements(expected, rays->hits())
+                                            : count_disagreements(expected, rays->flags());
+        require_agreement(differing, rays->size(),
                           name_ + " on embree/" + to_string(quality) + ", rays " + what.name);
         disagreements_[what.name] = differing;
     }
@@ -78,10 +80,10 @@ const EmbreeSubject::Batch& EmbreeSubject::batch(const TraceCase& what) const {
     return *std::ranges::find(batches_, what.rays, &Batch::kind);
 }
 
-std::size_t EmbreeSubject::ray_count(const TraceCase& what) const { return batch(what).rays.size(); }
+std::size_t EmbreeSubject::ray_count(const TraceCase& what) const { return batch(what).rays->size(); }
 
 void EmbreeSubject::trace(const TraceCase& what) {
-    RayPackets& rays = std::ranges::find(batches_, what.rays, &Batch::kind)->rays;
+    RayPackets& rays = *batch(what).rays;
     if (what.query == Query::Closest) rays.closest_hit(*scene_, pool_);
     else rays.any_hit(*scene_, pool_);
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,7 +37,7 @@ class EmbreeSubject final : public Fixture {
     struct Batch {
         Buffer<Ray> workload::StandardRays::*kind;
         std::vector<Hit> expected;
-        RayPackets rays;
+        std::unique_ptr<RayPackets> rays;
     };
     [[nodiscard]] const Batch& batch(const TraceCase& what) const;
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-/// How are rays handed to Embree? Eight at a time, in packets that are laid out before anything is timed.
+/// How are rays handed to Embree? In packets of as many as it has registers for, which are laid out before anything is timed.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -18,43 +19,26 @@ enum class Coherence { Coherent, Incoherent };
 /// A batch of rays, in order, with room for the results.
 class RayPackets {
   public:
-    RayPackets(std::span<const Ray> rays, Coherence coherence);
+    RayPackets() = default;
+    virtual ~RayPackets() = default;
+    RayPackets(const RayPackets&) = delete;
+    RayPackets& operator=(const RayPackets&) = delete;
 
-    [[nodiscard]] std::size_t size() const noexcept { return ray_count_; }
-    void closest_hit(const EmbreeScene& scene, ThreadPool& pool);
-    void any_hit(const EmbreeScene& scene, ThreadPool& pool);
+    [[nodiscard]] virtual std::size_t size() const noexcept = 0;
+    virtual void closest_hit(const EmbreeScene& scene, ThreadPool& pool) = 0;
+    virtual void any_hit(const EmbreeScene& scene, ThreadPool& pool) = 0;
 
     /// What the last closest_hit() found; the primitive is the scene triangle, the instance 0.
-    [[nodiscard]] std::vector<Hit> hits() const;
+    [[nodiscard]] virtual std::vector<Hit> hits() const = 0;
     /// What the last any_hit() found: 1 where occluded, else 0.
-    [[nodiscard]] std::vector<std::uint32_t> flags() const;
-
-  private:
-    static constexpr std::size_t width = 8;
-
-    /// Rows of RTCRay8, without those that are the same for all rays.
-    struct alignas(32) Rays {
-        float origin[3][width], tmin[width], direction[3][width], tmax[width];
-    };
-    /// Rows of RTCRayHit8 that make a setka::Hit.
-    struct alignas(32) Hits {
-        float t[width], u[width], v[width];
-        std::uint32_t primitive[width], geometry[width];
-    };
-    /// Row tfar of RTCRay8.
-    struct alignas(32) Ends {
-        float t[width];
-    };
-
-    template <typename Body>
-    void for_each_packet(ThreadPool& pool, const Body& body);
-    static void load(const Rays& source, RTCRay8& target);
-
-    std::size_t ray_count_;
-    Coherence coherence_;
-    std::vector<Rays> rays_;
-    std::vector<Hits> hits_;
-    std::vector<Ends> ends_;
+    [[nodiscard]] virtual std::vector<std::uint32_t> flags() const = 0;
 };
+
+/// The rays of a packet: 16 where Embree says that the processor has registers for them, else 8.
+[[nodiscard]] std::size_t packet_width();
+
+/// `width` is 8 or 16.
+[[nodiscard]] std::unique_ptr<RayPackets> make_ray_packets(std::span<const Ray> rays, Coherence coherence,
+                                                           std::size_t width);
 
 }  // namespace setka::bench

@@ -17,7 +17,7 @@ Settings read() {
     const std::string log = variable("SETKA_LOG");
     const auto logs = [&](const char* topic) { return log.find(topic) != std::string::npos; };
     const std::string sync = variable("SETKA_SYNC");
-    return {variable("SETKA_DEVICE"), variable("SETKA_POOL") != "0", !sync.empty() && sync != "0",
+    return {variable("SETKA_DEVICE"), variable("SETKA_POOL") != "0", variable("SETKA_WIDTH"), !sync.empty() && sync != "0",
             logs("build"), logs("launch"), logs("memory")};
 }
 

@@ -11,8 +11,8 @@
  *   SK_LOCAL_STORAGE         before an array in local memory, at the top of a kernel entry only
  *   SK_RESTRICT              on a pointer that nothing else aliases
  *   SK_ALIGNED(bytes)        before the name of a struct whose members are loaded at once
- *   SK_WIDTH                 how many rays a work-item traces side by side: 1 where work-items run in step, 8 on CPUs whose drivers
- *                            compile vectors well
+ *   SK_WIDTH                 how many rays a work-item traces side by side: 1 where work-items run in step, on CPUs whose drivers compile
+ *                            vectors well 8, or 16 with AVX-512
  *   SK_TEAM                  how many work-items run in step: 1, or a power of two up to 32 (an integer for #if)
  *   SK_DOUBLE                whether there is `double`, of which + - * / and conversions are correctly rounded too: only what the host does
  *                            again and compares may depend on it (an integer for #if)
@@ -26,10 +26,10 @@
  *   sk_atomic_min(p, v) sk_atomic_max(p, v) sk_atomic_add(p, v)  on sk_u32 in global or local memory, return what was there;
  *   sk_atomic_or(p, v)                                           order-free uses only
  *
- * Where SK_WIDTH is 8 (src/device/lanes.h), operators on vectors work on each element, comparisons give masks, scalars on one side
+ * Where SK_WIDTH is 8 or 16 (src/device/lanes.h), operators on vectors work on each element, comparisons give masks, scalars on one side
  * included, `mask ? a : b` with a mask of all bits or none, and:
- *   sk_fN sk_iN sk_f4        8 floats, 8 sk_i32, 4 floats
- *   sk_make_f(a, …, h) sk_make_i(a, …, h) sk_lane(v, k)          k is a literal
+ *   sk_fN sk_iN sk_f4        SK_WIDTH floats, as many sk_i32, 4 floats
+ *   sk_make_f(a, …) sk_make_i(a, …) sk_lane(v, k)                k is a constant
  *   sk_load_f4(p) sk_store_f(v, p) sk_store_i(v, p)              aligned as one number is; stores to private memory
  *   sk_lanes_to_float(i) sk_lanes_to_int(f)                      conversions; f in the range of sk_i32
  *   sk_lanes_as_int(f) sk_lanes_as_float(i)                      bit casts

@@ -56,10 +56,10 @@ inline thread_local sk_u32 sk_host_group = 0;
 /* Compile with -Wno-psabi: every function with vectors is called in its own file only. */
 #if SK_WIDTH > 1
 typedef float sk_f4 __attribute__((vector_size(16)));
-typedef float sk_fN __attribute__((vector_size(32)));
-typedef sk_i32 sk_iN __attribute__((vector_size(32)));
-#define sk_make_f(a, b, c, d, e, f, g, h) (sk_fN{a, b, c, d, e, f, g, h})
-#define sk_make_i(a, b, c, d, e, f, g, h) (sk_iN{a, b, c, d, e, f, g, h})
+typedef float sk_fN __attribute__((vector_size(4 * SK_WIDTH)));
+typedef sk_i32 sk_iN __attribute__((vector_size(4 * SK_WIDTH)));
+#define sk_make_f(...) (sk_fN{__VA_ARGS__})
+#define sk_make_i(...) (sk_iN{__VA_ARGS__})
 #define sk_lane(v, k) ((v)[k])
 static inline sk_f4 sk_load_f4(const float* p) {
     sk_f4 r;
@@ -73,7 +73,11 @@ static inline void sk_store_i(sk_iN v, sk_i32* p) { std::memcpy(p, &v, sizeof v)
 #define sk_lanes_as_int(f) ((sk_iN)(f))
 #define sk_lanes_as_float(i) ((sk_fN)(i))
 #define sk_shuffle __builtin_shufflevector
-static inline sk_i32 sk_lanes_or(sk_iN i) { return ((i[0] | i[1]) | (i[2] | i[3])) | ((i[4] | i[5]) | (i[6] | i[7])); }
+static inline sk_i32 sk_lanes_or(sk_iN i) {
+    sk_i32 r = 0;
+    for (sk_u32 k = 0u; k < SK_WIDTH; ++k) r |= i[k];
+    return r;
+}
 #endif
 
 static inline sk_u32 sk_atomic_min(sk_u32* target, sk_u32 value) {

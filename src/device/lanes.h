@@ -2,7 +2,7 @@
 /**
  * How do kernels calculate with SK_WIDTH numbers side by side? One in each lane of a vector, with the
  * operations of math.h, which round in a lane as they do alone. A mask has all bits of a lane set, or none.
- * Only where SK_WIDTH is 8: a work-item of a CPU.
+ * Only where SK_WIDTH is 8 or 16: a work-item of a CPU.
  */
 #ifndef SETKA_DEVICE_LANES_H
 #define SETKA_DEVICE_LANES_H
@@ -13,8 +13,21 @@ typedef struct sk_vec3N {
     sk_fN x, y, z;
 } sk_vec3N;
 
-SK_FUNCTION sk_fN sk_same_f(float a) { return sk_make_f(a, a, a, a, a, a, a, a); }
-SK_FUNCTION sk_iN sk_same_i(sk_i32 a) { return sk_make_i(a, a, a, a, a, a, a, a); }
+#if SK_WIDTH == 16u
+#define SK_EACH_LANE(f) \
+    f(0), f(1), f(2), f(3), f(4), f(5), f(6), f(7), f(8), f(9), f(10), f(11), f(12), f(13), f(14), f(15)
+#else
+#define SK_EACH_LANE(f) f(0), f(1), f(2), f(3), f(4), f(5), f(6), f(7)
+#endif
+
+/** f(0) to f(SK_WIDTH - 1), one a lane. */
+#define SK_FLOATS(f) sk_make_f(SK_EACH_LANE(f))
+#define SK_INTS(f) sk_make_i(SK_EACH_LANE(f))
+
+#define SK_A(k) a
+SK_FUNCTION sk_fN sk_same_f(float a) { return SK_FLOATS(SK_A); }
+SK_FUNCTION sk_iN sk_same_i(sk_i32 a) { return SK_INTS(SK_A); }
+#undef SK_A
 
 /** Where the mask is set a, else b. */
 SK_FUNCTION sk_fN sk_select_f(sk_iN mask, sk_fN a, sk_fN b) { return mask ? a : b; }
@@ -32,7 +45,9 @@ SK_FUNCTION sk_iN sk_finite_f(sk_fN a) { return (sk_lanes_as_int(a) & 0x7f800000
 
 /** Bit k: the mask is set in lane k. */
 SK_FUNCTION sk_u32 sk_lane_bits(sk_iN mask) {
-    return (sk_u32)sk_lanes_or(mask & sk_make_i(1, 2, 4, 8, 16, 32, 64, 128));
+#define SK_BIT_OF(k) 1 << (k)
+    return (sk_u32)sk_lanes_or(mask & SK_INTS(SK_BIT_OF));
+#undef SK_BIT_OF
 }
 
 /** The number of the lowest bit of each lane that has one. */
@@ -52,10 +67,6 @@ SK_FUNCTION sk_vec3N sk_make3_f(sk_fN x, sk_fN y, sk_fN z) {
     return r;
 }
 
-/** f(0) to f(SK_WIDTH - 1), one a lane. */
-#define SK_FLOATS(f) sk_make_f(f(0), f(1), f(2), f(3), f(4), f(5), f(6), f(7))
-#define SK_INTS(f) sk_make_i(f(0), f(1), f(2), f(3), f(4), f(5), f(6), f(7))
-
 /** base[at * stride] of each lane; `at` is a u32. */
 SK_FUNCTION sk_fN sk_gather_f(SK_GLOBAL const float* base, sk_iN at, sk_u32 stride) {
 #define SK_AT(k) base[(size_t)(sk_u32)sk_lane(at, k) * stride]
@@ -73,25 +84,39 @@ typedef struct sk_columns {
     sk_fN a, b, c, d;
 } sk_columns;
 
-/** Four numbers from base[at * stride] on of each lane: a load of four for each, then a transposition. */
+/* Indices of shuffles, four numbers at a time from number k of both vectors on: each number of the lower or upper two beside the other
+ * vector's, or the lower or upper two of each. */
+#define SK_LOW_EACH(k) (k), (k) + SK_WIDTH, (k) + 1, (k) + 1 + SK_WIDTH
+#define SK_HIGH_EACH(k) (k) + 2, (k) + 2 + SK_WIDTH, (k) + 3, (k) + 3 + SK_WIDTH
+#define SK_LOW_TWO(k) (k), (k) + 1, (k) + SK_WIDTH, (k) + 1 + SK_WIDTH
+#define SK_HIGH_TWO(k) (k) + 2, (k) + 3, (k) + 2 + SK_WIDTH, (k) + 3 + SK_WIDTH
+#if SK_WIDTH == 16u
+#define SK_EACH_FOUR(f) f(0), f(4), f(8), f(12)
+#else
+#define SK_EACH_FOUR(f) f(0), f(4)
+#endif
+
+/** Four numbers from base[at * stride] on of each lane: a load of four for each, then transpositions of four by four. */
 SK_FUNCTION sk_columns sk_gather4(SK_GLOBAL const float* base, sk_iN at, sk_u32 stride) {
 #define SK_ROW(k) sk_load_f4(base + (size_t)(sk_u32)sk_lane(at, k) * stride)
-    const sk_f4 r0 = SK_ROW(0), r1 = SK_ROW(1), r2 = SK_ROW(2), r3 = SK_ROW(3);
-    const sk_f4 r4 = SK_ROW(4), r5 = SK_ROW(5), r6 = SK_ROW(6), r7 = SK_ROW(7);
+#define SK_TWO_ROWS(k) sk_shuffle(SK_ROW(k), SK_ROW((k) + 4), 0, 1, 2, 3, 4, 5, 6, 7)
+#if SK_WIDTH == 16u
+#define SK_ROWS(k) \
+    sk_shuffle(SK_TWO_ROWS(k), SK_TWO_ROWS((k) + 8), 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
+#else
+#define SK_ROWS(k) SK_TWO_ROWS(k)
+#endif
+    const sk_fN s0 = SK_ROWS(0), s1 = SK_ROWS(1), s2 = SK_ROWS(2), s3 = SK_ROWS(3);
+#undef SK_ROWS
+#undef SK_TWO_ROWS
 #undef SK_ROW
-    const sk_fN s0 = sk_shuffle(r0, r4, 0, 1, 2, 3, 4, 5, 6, 7),
-                s1 = sk_shuffle(r1, r5, 0, 1, 2, 3, 4, 5, 6, 7);
-    const sk_fN s2 = sk_shuffle(r2, r6, 0, 1, 2, 3, 4, 5, 6, 7),
-                s3 = sk_shuffle(r3, r7, 0, 1, 2, 3, 4, 5, 6, 7);
-    const sk_fN low01 = sk_shuffle(s0, s1, 0, 8, 1, 9, 4, 12, 5, 13),
-                high01 = sk_shuffle(s0, s1, 2, 10, 3, 11, 6, 14, 7, 15);
-    const sk_fN low23 = sk_shuffle(s2, s3, 0, 8, 1, 9, 4, 12, 5, 13),
-                high23 = sk_shuffle(s2, s3, 2, 10, 3, 11, 6, 14, 7, 15);
+    const sk_fN low01 = sk_shuffle(s0, s1, SK_EACH_FOUR(SK_LOW_EACH)), high01 = sk_shuffle(s0, s1, SK_EACH_FOUR(SK_HIGH_EACH));
+    const sk_fN low23 = sk_shuffle(s2, s3, SK_EACH_FOUR(SK_LOW_EACH)), high23 = sk_shuffle(s2, s3, SK_EACH_FOUR(SK_HIGH_EACH));
     sk_columns r;
-    r.a = sk_shuffle(low01, low23, 0, 1, 8, 9, 4, 5, 12, 13);
-    r.b = sk_shuffle(low01, low23, 2, 3, 10, 11, 6, 7, 14, 15);
-    r.c = sk_shuffle(high01, high23, 0, 1, 8, 9, 4, 5, 12, 13);
-    r.d = sk_shuffle(high01, high23, 2, 3, 10, 11, 6, 7, 14, 15);
+    r.a = sk_shuffle(low01, low23, SK_EACH_FOUR(SK_LOW_TWO));
+    r.b = sk_shuffle(low01, low23, SK_EACH_FOUR(SK_HIGH_TWO));
+    r.c = sk_shuffle(high01, high23, SK_EACH_FOUR(SK_LOW_TWO));
+    r.d = sk_shuffle(high01, high23, SK_EACH_FOUR(SK_HIGH_TWO));
     return r;
 }
 

@@ -68,6 +68,14 @@ TEST(BadInput, PrimitivesThatTheDeviceHasNot) {
                           {"Library"});
 }
 
+TEST(BadInput, WidthThatNoKernelHas) {
+    SETKA_NEED_DEVICE();
+    if (run({"devices"}).output.find("Portable Computing Language") == std::string::npos) GTEST_SKIP() << "no PoCL";
+    for (const std::string width : {"5", "-8", "16 ", "0", "1e9"})
+        expect_one_clear_line(run({"build", "cube", "--device", "Portable Computing Language"}, {{"SETKA_WIDTH", width}}),
+                              {"SETKA_WIDTH", "'" + width + "'", "16"});
+}
+
 TEST(BadInput, NoDevice) {
     const Folder no_drivers;
     const std::vector<std::pair<std::string, std::string>> environment{

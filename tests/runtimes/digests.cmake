@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: MIT
 # Does a driver print the digests that PoCL printed? Runs PROGRAM in MODE on RUNTIME; RUNTIME pocl writes WORK/<MODE>.txt, the
-# others compare with it. Under Oclgrind there may be no report, and every kernel of KERNELS, a header, has to have run.
+# others compare with it, and so does WIDTH, a SETKA_WIDTH that has to reach the kernels. Under Oclgrind there may be no report, and every kernel of KERNELS, a header, has to have run.
 cmake_minimum_required(VERSION 3.22)
 include(${CMAKE_CURRENT_LIST_DIR}/runtime.cmake)
 if(runtime_missing_why)
     runtime_missing("${runtime_missing_why}")
 endif()
 set(expected_file ${WORK}/${MODE}.txt)
-if(RUNTIME STREQUAL "pocl")
+if(RUNTIME STREQUAL "pocl" AND NOT WIDTH)
+    set(is_first TRUE)
     file(REMOVE ${expected_file})
 elseif(NOT EXISTS ${expected_file})
     runtime_missing("there is nothing to compare with: PoCL has not run")
@@ -18,6 +19,9 @@ if(RUNTIME STREQUAL "oclgrind")
     # Oclgrind 21.10 takes the first transfer into a buffer, or into an earlier one of the same number, for the extent of what it
     # tracks, and calls the rest uninitialised. So this is asked for here alone, where buffers are written whole and not reused.
     list(APPEND runtime_environment OCLGRIND_UNINITIALIZED=1 SETKA_LOG=launch)
+endif()
+if(WIDTH)
+    list(APPEND runtime_environment SETKA_WIDTH=${WIDTH} SETKA_LOG=build)
 endif()
 runtime_run(${PROGRAM} ${MODE})
 runtime_missing_if_processor_is_unknown()
@@ -44,7 +48,11 @@ if(RUNTIME STREQUAL "oclgrind")
     message(STATUS "Oclgrind has nothing to say about ${kernel_count} kernels")
 endif()
 
-if(RUNTIME STREQUAL "pocl")
+if(WIDTH AND NOT error MATCHES "-DSK_WIDTH=${WIDTH}u")
+    message(FATAL_ERROR "${RUNTIME} was not asked for kernels of width ${WIDTH}:\n${error}")
+endif()
+
+if(is_first)
     file(WRITE ${expected_file} "${output}")
     message(STATUS "${count} lines to compare with")
     return()

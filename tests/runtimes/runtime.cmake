@@ -29,7 +29,7 @@ set(runtime_vendors ${WORK}/vendors_${RUNTIME})
 file(REMOVE_RECURSE ${runtime_vendors})
 file(MAKE_DIRECTORY ${runtime_vendors} ${WORK}/cache_${RUNTIME})
 set(runtime_environment OCL_ICD_VENDORS=${runtime_vendors} --unset=OCL_ICD_FILENAMES --unset=SETKA_DEVICE --unset=SETKA_LOG
-    --unset=SETKA_TEST_SIZE --unset=OCLGRIND_LOG SETKA_REQUIRE=opencl CUDA_VISIBLE_DEVICES= POCL_CACHE_DIR=${WORK}/cache_${RUNTIME})
+    --unset=SETKA_WIDTH --unset=SETKA_TEST_SIZE --unset=OCLGRIND_LOG SETKA_REQUIRE=opencl CUDA_VISIBLE_DEVICES= POCL_CACHE_DIR=${WORK}/cache_${RUNTIME})
 set(runtime_missing_why "")
 
 if(RUNTIME STREQUAL "pocl")

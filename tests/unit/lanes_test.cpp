@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-/// Are eight numbers side by side those that one after the other gives? Rays and triangle tests in lanes
+/// Are SK_WIDTH numbers side by side those that one after the other gives? Rays and triangle tests in lanes
 /// against the same in scalars, bit for bit. The walk in lanes is held against brute force on the host device
 /// (tests/fuzz) and in the parity tests.
 // The translation comes before every file of the dialect.
@@ -82,7 +82,9 @@ std::vector<SetkaRay> some_rays(Numbers& number, std::size_t count) {
 
 std::uint32_t bits(float f) { return std::bit_cast<std::uint32_t>(f); }
 
-constexpr sk_iN lanes{0, 1, 2, 3, 4, 5, 6, 7};
+#define LANE(k) k
+const sk_iN lanes = SK_INTS(LANE);
+#undef LANE
 
 TEST(Lanes, PrepareRaysAsScalarsDo) {
     Numbers number;
@@ -153,16 +155,61 @@ TEST(Lanes, TestTrianglesAsScalarsDo) {
 
 /// The smallest w counts, then the smallest number as an unsigned one; any hit is better than none.
 TEST(Lanes, PreferHitsAsScalarsDo) {
+    constexpr sk_i32 none = static_cast<sk_i32>(SETKA_NO_HIT);
+    struct Case {
+        float w;
+        sk_i32 number;
+        float best_w;
+        sk_i32 best_triangle;
+        bool is_better;
+    };
+    constexpr std::array<Case, 8> cases{{{1, 9, 2, 5, true},
+                                         {2, 4, 2, 5, true},
+                                         {3, 4, 2, 5, false},
+                                         {2, 6, 2, 5, false},
+                                         {2, 5, 2, 5, false},
+                                         {2, 6, 2, static_cast<sk_i32>(0x80000005u), true},
+                                         {3e38f, 0, 3e38f, none, true},
+                                         {infinity, 0, 3e38f, none, true}}};
     sk_hit_lanes hit{};
-    hit.w = sk_fN{1, 2, 3, 2, 2, 2, 3e38f, infinity};
     sk_best_lanes best = sk_no_hit_lanes();
-    best.w = sk_fN{2, 2, 2, 2, 2, 2, 3e38f, 3e38f};
-    const sk_i32 none = static_cast<sk_i32>(SETKA_NO_HIT);
-    best.triangle = sk_iN{5, 5, 5, 5, 5, static_cast<sk_i32>(0x80000005u), none, none};
-    const sk_iN number{9, 4, 4, 6, 5, 6, 0, 0};
+    sk_iN number{};
+    for (std::size_t k = 0; k < SK_WIDTH; ++k) {
+        const Case& one = cases[k % cases.size()];
+        hit.w[k] = one.w;
+        number[k] = one.number;
+        best.w[k] = one.best_w;
+        best.triangle[k] = one.best_triangle;
+    }
     const sk_iN better = sk_is_better_lanes(hit, number, best);
-    const sk_iN expected{-1, -1, 0, 0, 0, -1, -1, -1};
-    for (std::size_t k = 0; k < SK_WIDTH; ++k) EXPECT_EQ(better[k], expected[k]) << "lane " << k;
+    for (std::size_t k = 0; k < SK_WIDTH; ++k)
+        EXPECT_EQ(better[k], cases[k % cases.size()].is_better ? -1 : 0) << "lane " << k;
+}
+
+/// A number from each lane's place; rows of four beside each other become columns; and bits.
+TEST(Lanes, GatherAndCount) {
+    std::vector<float> numbers(1000);
+    for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<float>(i);
+    const sk_iN at = lanes * 3 + 7;
+    const sk_columns columns = sk_gather4(numbers.data(), at, 9);
+    const sk_fN ones = sk_gather_f(numbers.data(), at, 9);
+    const sk_iN mask = (lanes & 5) == sk_same_i(4);
+    for (std::size_t k = 0; k < SK_WIDTH; ++k) {
+        const float first = static_cast<float>((k * 3 + 7) * 9);
+        EXPECT_EQ(ones[k], first) << "lane " << k;
+        EXPECT_EQ(columns.a[k], first) << "lane " << k;
+        EXPECT_EQ(columns.b[k], first + 1) << "lane " << k;
+        EXPECT_EQ(columns.c[k], first + 2) << "lane " << k;
+        EXPECT_EQ(columns.d[k], first + 3) << "lane " << k;
+        EXPECT_EQ(sk_lane_bits(mask) >> k & 1u, (k & 5) == 4 ? 1u : 0u) << "lane " << k;
+        EXPECT_EQ(sk_lowest_bits(sk_same_i(12 << k))[k], static_cast<sk_i32>(k + 2)) << "lane " << k;
+        sk_iN single{};
+        EXPECT_FALSE(sk_any_lane(single));
+        single[k] = -1;
+        EXPECT_TRUE(sk_any_lane(single));
+        EXPECT_EQ(sk_lane_bits(single), 1u << k);
+    }
+    EXPECT_LT(sk_lane_bits(mask), 1u << SK_WIDTH);
 }
 
 }  // namespace

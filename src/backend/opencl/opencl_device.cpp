@@ -63,21 +63,31 @@ Error opencl_error(const std::string& what, const cl::Error& error) {
                      opencl_code_name(error.err()));
 }
 
+namespace {
+
+/// Eight floats fill a register of AVX, sixteen one of AVX-512. Only compilers that are known to cope: Mesa's rusticl cannot translate
+/// the reductions of vectors, and Oclgrind executes vectors no faster.
+std::uint32_t width_of(const cl::Device& device, const DeviceInfo& info) {
+    const bool copes = info.platform.starts_with("Portable Computing Language") || info.platform.starts_with("Intel(R)");
+    if (info.type != DeviceType::Cpu || !copes) return 1;
+    const std::string& width = settings().width;
+    if (width.empty()) return device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>() >= 16 ? 16 : 8;
+    if (width != "1" && width != "8" && width != "16")
+        throw Error(ErrorCategory::InvalidArgument, "SETKA_WIDTH is '" + width + "'; 1, 8 and 16 are accepted");
+    return static_cast<std::uint32_t>(std::stoul(width));
+}
+
+}  // namespace
+
 OpenClDevice::OpenClDevice(cl::Device device, DeviceInfo info, const DeviceOptions& options)
     : device_(std::move(device)), info_(std::move(info)) {
     guarded("opening " + info_.id, [&] {
         context_ = cl::Context(device_);
+        width_ = width_of(device_, info_);
         has_doubles_ = device_.getInfo<CL_DEVICE_EXTENSIONS>().find("cl_khr_fp64") != std::string::npos;
     });
     build_program();
     options_ = resolve_options(options, info_, capabilities());
-}
-
-std::uint32_t OpenClDevice::width() const noexcept {
-    // Eight floats fill a register of AVX, two of SSE or Neon. Only compilers that are known to cope: Mesa's rusticl cannot
-    // translate the reductions of vectors, and Oclgrind executes vectors no faster.
-    const bool copes = info_.platform.starts_with("Portable Computing Language") || info_.platform.starts_with("Intel(R)");
-    return info_.type == DeviceType::Cpu && copes ? 8 : 1;
 }
 
 void OpenClDevice::build_program() {
@@ -108,7 +118,7 @@ void OpenClDevice::build_program() {
     }
     if (settings().log_build) {
         const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
-        log_line("built the kernels for " + info_.name + " in " + std::to_string(time.count()) + " ms\n" + build_log());
+        log_line("built the kernels for " + info_.name + " (" + build_options + ") in " + std::to_string(time.count()) + " ms\n" + build_log());
     }
 }
 

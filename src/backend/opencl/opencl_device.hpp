@@ -22,7 +22,7 @@ class OpenClDevice final : public Device {
     [[nodiscard]] const DeviceOptions& options() const noexcept override { return options_; }
     [[nodiscard]] std::shared_ptr<Queue> make_queue() override;
     void trim() override { pools_.clear(); }
-    [[nodiscard]] std::uint32_t width() const noexcept override;
+    [[nodiscard]] std::uint32_t width() const noexcept override { return width_; }
     /// GPUs run 32 or 64 work-items in step. A CPU's run one after the other, and would wait at each barrier for all of them.
     [[nodiscard]] std::uint32_t team_size() const noexcept override {
         return info_.type == DeviceType::Gpu && info_.max_work_group_size >= 32 ? 32 : 1;
@@ -41,6 +41,7 @@ class OpenClDevice final : public Device {
     cl::Device device_;
     DeviceInfo info_;
     DeviceOptions options_;
+    std::uint32_t width_ = 1;
     bool has_doubles_ = false;
     cl::Context context_;
     cl::Program program_;

@@ -17,10 +17,10 @@ typedef struct sk_trace_params {
     setka_u32 instance_count;
     setka_u32 triangle_count;
     setka_u32 row_length;     /* rays of a row, if tiled_rays is not 0 */
-    setka_u32 tiled_rays;     /* so many rays from the first on are traced tile by tile: a multiple of SK_TILE_ROWS rows */
+    setka_u32 tiled_rays;     /* so many rays from the first on are traced tile by tile: whole rows of tiles */
 } sk_trace_params;
 
-/** Rows of a tile (tiles.h). */
-#define SK_TILE_ROWS 2u
+/** Columns of a tile (tiles.h), which has SK_WIDTH rays: as many of each row. */
+#define SK_TILE_COLUMNS 4u
 
 #endif
