@@ -102,6 +102,17 @@ typedef int8 sk_iN;
 #define sk_lanes_or(i) sk_or_of_8(i)
 #endif
 #endif
+/* One instruction where the compiler is known to be for such a processor. */
+#if SK_WIDTH == 16u && defined(__AVX512DQ__)
+#define sk_lane_bits(mask) ((sk_u32)(ushort)__builtin_ia32_cvtd2mask512(mask))
+#elif SK_WIDTH == 8u && defined(__AVX__)
+#define sk_lane_bits(mask) ((sk_u32)__builtin_ia32_movmskps256(as_float8(mask)))
+#elif SK_WIDTH == 16u
+#define sk_lane_bits(mask) \
+    ((sk_u32)sk_lanes_or((mask) & (int16)(1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768)))
+#else
+#define sk_lane_bits(mask) ((sk_u32)sk_lanes_or((mask) & (int8)(1, 2, 4, 8, 16, 32, 64, 128)))
+#endif
 #endif
 
 #endif

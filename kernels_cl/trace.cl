@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /** Entries of the tracers, one a structure, query and step; the bodies are in src/device/trace and src/device/grid. Those with
- * `first` do rays first to n - 1; trace_grid_closest_dda and trace_grid_any_dda SK_WIDTH a work-item, the others one. */
+ * `first` do rays first to n - 1; trace_grid_closest_dda and trace_grid_any_dda SK_ITEM_RAYS a work-item, the others one. */
 #include "platform.h"
 
 #include "device/grid/trace.h"
@@ -48,7 +48,7 @@ SK_TEAM_KERNEL void trace_grid_closest_dda(sk_u32 n, sk_u32 first, SetkaGridHead
                                            SK_GLOBAL const sk_u32* instance_starts,
                                            SK_GLOBAL const SetkaInstance* instances) {
     SK_SHARED_STORAGE sk_team team;
-    sk_trace_closest(&team, n, first + sk_global_id() * SK_WIDTH, grid, params, rays, skip, hits,
+    sk_trace_closest(&team, n, first + sk_global_id() * SK_ITEM_RAYS, grid, params, rays, skip, hits,
                      sk_make_tables(blocks, cells, references, triangles, instance_starts, instances));
 }
 
@@ -77,7 +77,7 @@ SK_TEAM_KERNEL void trace_grid_any_dda(sk_u32 n, sk_u32 first, SetkaGridHeader g
                                        SK_GLOBAL const sk_u32* instance_starts,
                                        SK_GLOBAL const SetkaInstance* instances) {
     SK_SHARED_STORAGE sk_team team;
-    sk_trace_any(&team, n, first + sk_global_id() * SK_WIDTH, grid, params, rays, skip, occluded,
+    sk_trace_any(&team, n, first + sk_global_id() * SK_ITEM_RAYS, grid, params, rays, skip, occluded,
                  sk_make_tables(blocks, cells, references, triangles, instance_starts, instances));
 }
 

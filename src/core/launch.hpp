@@ -26,8 +26,7 @@ void launch_groups(Queue& queue, Kernel kernel, std::uint32_t groups, std::uint3
 
 /// Launches groups enough for one work-item for each of `items` elements.
 template <typename... Ts>
-void launch_enough(Queue& queue, Kernel kernel, std::uint32_t items, const Ts&... arguments) {
-    const std::uint32_t group_size = group_size_of(queue, kernel);
+void launch_enough(Queue& queue, Kernel kernel, std::uint32_t items, std::uint32_t group_size, const Ts&... arguments) {
     launch_groups(queue, kernel, items / group_size + (items % group_size != 0), group_size, arguments...);
 }
 
@@ -36,18 +35,21 @@ void launch_enough(Queue& queue, Kernel kernel, std::uint32_t items, const Ts&..
 template <typename... Ts>
 void launch_items(Queue& queue, Kernel kernel, std::uint32_t items, const Ts&... arguments) {
     if (items == 0) return;
-    launch_enough(queue, kernel, items, items, arguments...);
+    launch_enough(queue, kernel, items, group_size_of(queue, kernel), items, arguments...);
 }
 
 /// The same for a kernel that takes a second number, the first element (`n, first, …`), and does elements first to n - 1, `width`
-/// in each work-item. Where a stop can be requested, at most `most` a launch.
+/// in each work-item. Where a stop can be requested, at most `most` a launch. Groups shrink with what a work-item does beyond the device's
+/// width, so that a batch has as many groups as ever to spread over the cores.
 template <typename... Ts>
 void launch_wide_range(Queue& queue, Kernel kernel, std::uint32_t items, std::uint32_t width, std::uint64_t most,
                        const Ts&... arguments) {
+    const std::uint32_t vectors = std::max(1u, width / queue.device().impl()->width());
+    const std::uint32_t group_size = std::max(1u, group_size_of(queue, kernel) / vectors);
     const std::uint64_t step = queue.impl().stop_token().stop_possible() ? std::max<std::uint64_t>(most, 1) : items;
     for (std::uint64_t first = 0; first < items; first += step) {
         const std::uint64_t end = std::min<std::uint64_t>(items, first + step);
-        launch_enough(queue, kernel, static_cast<std::uint32_t>((end - first + width - 1) / width),
+        launch_enough(queue, kernel, static_cast<std::uint32_t>((end - first + width - 1) / width), group_size,
                       static_cast<std::uint32_t>(end), static_cast<std::uint32_t>(first), arguments...);
     }
 }

@@ -34,6 +34,7 @@
  *   sk_lanes_to_float(i) sk_lanes_to_int(f)                      conversions; f in the range of sk_i32
  *   sk_lanes_as_int(f) sk_lanes_as_float(i)                      bit casts
  *   sk_lanes_or(i)                                               of all lanes
+ *   sk_lane_bits(mask)                                           bit k: the mask is set in lane k
  *   sk_shuffle(v, w, i, …)                                       elements of v and w, which are numbered on
  *
  * Not allowed: fma, mad, min, max, clamp, rsqrt, dot, cross, normalize, pow, exp, log, sin, float3, doubles without SK_DOUBLE, sub-groups,

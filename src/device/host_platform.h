@@ -78,6 +78,11 @@ static inline sk_i32 sk_lanes_or(sk_iN i) {
     for (sk_u32 k = 0u; k < SK_WIDTH; ++k) r |= i[k];
     return r;
 }
+static inline sk_u32 sk_lane_bits(sk_iN mask) {
+    sk_u32 r = 0;
+    for (sk_u32 k = 0u; k < SK_WIDTH; ++k) r |= (mask[k] != 0 ? 1u : 0u) << k;
+    return r;
+}
 #endif
 
 static inline sk_u32 sk_atomic_min(sk_u32* target, sk_u32 value) {

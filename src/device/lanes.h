@@ -43,13 +43,6 @@ SK_FUNCTION sk_fN sk_positive_zero_f(sk_fN a) {
 }
 SK_FUNCTION sk_iN sk_finite_f(sk_fN a) { return (sk_lanes_as_int(a) & 0x7f800000) != sk_same_i(0x7f800000); }
 
-/** Bit k: the mask is set in lane k. */
-SK_FUNCTION sk_u32 sk_lane_bits(sk_iN mask) {
-#define SK_BIT_OF(k) 1 << (k)
-    return (sk_u32)sk_lanes_or(mask & SK_INTS(SK_BIT_OF));
-#undef SK_BIT_OF
-}
-
 /** The number of the lowest bit of each lane that has one. */
 SK_FUNCTION sk_iN sk_lowest_bits(sk_iN bits) {
     return (sk_lanes_as_int(sk_lanes_to_float(bits & -bits)) >> 23 & 0xff) -

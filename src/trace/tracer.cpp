@@ -55,7 +55,8 @@ struct QueryKernels {
 /// How many rays one work-item of a kernel traces.
 std::uint32_t rays_an_item(const Device& device, Kernel kernel) {
     const bool is_wide = kernel == Kernel::trace_grid_closest_dda || kernel == Kernel::trace_grid_any_dda;
-    return is_wide ? device.impl()->width() : 1;
+    const std::uint32_t width = device.impl()->width();
+    return is_wide && width > 1 ? width * SK_FLIGHTS : 1;
 }
 
 constexpr QueryKernels closest_kernels{Kernel::trace_brute_closest, Kernel::trace_grid_closest_dda,

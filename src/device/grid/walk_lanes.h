@@ -1,14 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /**
- * What do SK_WIDTH rays hit in the grid, where one work-item has vector registers for all of them? The walk
- * of walk.h, with a ray in each lane and in a cell of its own. All lanes make a step; then the lists that
- * they have come to are tested, one after the other, each triangle for all lanes at once. Every ray and
- * triangle sees the operations of ray.h and triangle.h, so that the hits are the same.
+ * What do rays hit in the grid, where one work-item has vector registers for SK_WIDTH of them? The walk of walk.h, with a ray in each
+ * lane and in a cell of its own. A work-item has SK_FLIGHTS vectors of rays on their way, and takes all of them through one stage of a turn
+ * after the other: a look at the cells they have come to, the lists there, the triangles that may be hit, a step on. A stage of one flight
+ * waits for memory, and for the one before; those of the others do not depend on it, so that the processor can begin them meanwhile. Every
+ * ray and triangle sees the operations of ray.h and triangle.h, so that the hits are the same.
  */
 #ifndef SETKA_DEVICE_GRID_WALK_LANES_H
 #define SETKA_DEVICE_GRID_WALK_LANES_H
 
 #include "device/grid/walk.h"
+#include "device/trace/params.h"
 #include "device/trace/triangle_lanes.h"
 
 /** sk_axis in lanes. */
@@ -147,26 +149,34 @@ SK_FUNCTION sk_span_lanes sk_limit_lanes(sk_ray_lanes ray) {
 
 /** SK_WIDTH rays on their way. */
 typedef struct sk_flight {
+    sk_iN number; /* of the rays */
     sk_ray_lanes ray;
     sk_vec3N o; /* the ray's, along its kx, ky and kz */
     sk_iN kz;
+    sk_iN skip;
+    sk_fN end, last; /* nothing beyond is of interest; the same with the best hit */
+    sk_iN walking;
     sk_place_lanes at;
     sk_best_lanes best;
-    sk_iN skip;
+    sk_iN listed, record;       /* lanes that have come to a list, and its record */
+    sk_iN candidates, offset;   /* bit k: the lane's ray may hit triangle references[offset + k] */
 } sk_flight;
 
-SK_FUNCTION sk_flight sk_take_off(SetkaGridHeader grid, sk_ray_lanes ray, sk_span_lanes span, sk_iN skip) {
-    sk_flight r;
-    r.ray = ray;
-    r.o = sk_turn_axes(ray, ray.o);
-    r.kz = sk_select_i(ray.along_x, sk_same_i(0), sk_select_i(ray.along_y, sk_same_i(1), sk_same_i(2)));
-    r.at.x = sk_make_axis_lanes(grid, 0u, ray.o.x, ray.d.x, ray.inverse.x, span.w0);
-    r.at.y = sk_make_axis_lanes(grid, 1u, ray.o.y, ray.d.y, ray.inverse.y, span.w0);
-    r.at.z = sk_make_axis_lanes(grid, 2u, ray.o.z, ray.d.z, ray.inverse.z, span.w0);
-    r.at.cube = sk_same_i(0);
-    r.best = sk_no_hit_lanes();
-    r.skip = skip;
-    return r;
+SK_FUNCTION void sk_take_off(sk_flight* f, SetkaGridHeader grid, sk_iN number, sk_ray_lanes ray, sk_iN skip) {
+    const sk_span_lanes span = sk_limit_lanes(ray);
+    f->number = number;
+    f->ray = ray;
+    f->o = sk_turn_axes(ray, ray.o);
+    f->kz = sk_select_i(ray.along_x, sk_same_i(0), sk_select_i(ray.along_y, sk_same_i(1), sk_same_i(2)));
+    f->skip = skip;
+    f->end = span.w1;
+    f->last = span.w1;
+    f->walking = span.meets;
+    f->at.x = sk_make_axis_lanes(grid, 0u, ray.o.x, ray.d.x, ray.inverse.x, span.w0);
+    f->at.y = sk_make_axis_lanes(grid, 1u, ray.o.y, ray.d.y, ray.inverse.y, span.w0);
+    f->at.z = sk_make_axis_lanes(grid, 2u, ray.o.z, ray.d.z, ray.inverse.z, span.w0);
+    f->at.cube = sk_same_i(0);
+    f->best = sk_no_hit_lanes();
 }
 
 /** The best of `best` and the hits of the triangles `number`; none where that is SETKA_NO_HIT. */
@@ -204,70 +214,124 @@ SK_FUNCTION sk_iN sk_test_one_list(sk_grid_tables tables, sk_ray_lanes ray, sk_v
     return r;
 }
 
-/**
- * Tests the lists of the lanes in `listed`. A turn takes the first lane that waits and tests up to SK_ROUND
- * triangles of its list for it and all lanes with the same list and axis. The accurate test is long and few
- * triangles come to it, so candidates wait until the turns are through, or a list has more triangles.
- */
-SK_FUNCTION sk_best_lanes sk_test_lists(sk_grid_tables tables, sk_trace_params params, sk_flight f,
-                                        sk_iN listed, sk_iN record) {
-    sk_iN candidates = sk_same_i(0), offset = sk_same_i(0);
-    sk_u32 waiting = sk_lane_bits(listed), first = 0u;
+/** Tests the candidates of each lane, each in its turn. */
+SK_FUNCTION void sk_test_all_candidates(sk_grid_tables tables, sk_trace_params params, sk_flight* f, sk_iN candidates,
+                                        sk_iN offset) {
+    while (sk_any_lane(candidates)) {
+        const sk_iN some = candidates != sk_same_i(0);
+        const sk_iN number = sk_gather_i(tables.references, (offset + sk_lowest_bits(candidates)) & some, 1u);
+        f->best = sk_test_candidates(
+            tables, params, f->ray,
+            sk_select_i(some & (number != f->skip), number, sk_same_i((sk_i32)SETKA_NO_HIT)), f->best);
+        candidates = candidates & (candidates - 1);
+    }
+}
+
+/** A list that lanes of a flight have come to whose rays have the same largest axis. */
+typedef struct sk_task {
+    sk_cell_list list;
+    sk_u32 flight, kz;
+    sk_u32 lanes; /* bits */
+} sk_task;
+
+/** Adds the lists of flight `number` to `count` tasks; up to SK_WIDTH. Their number then. */
+SK_FUNCTION sk_u32 sk_add_tasks(sk_grid_tables tables, sk_flight* flights, sk_u32 number, sk_task* tasks, sk_u32 count) {
+    sk_flight* const f = flights + number;
+    sk_u32 waiting = sk_lane_bits(f->listed);
     sk_i32 axes[SK_WIDTH], records[SK_WIDTH];
-    sk_store_i(f.kz, axes);
-    sk_store_i(record, records);
-    do {
+    sk_store_i(f->kz, axes);
+    sk_store_i(f->record, records);
+    f->candidates = sk_same_i(0);
+    f->offset = sk_same_i(0);
+    while (waiting != 0u) {
         const sk_u32 lane = sk_popcount((waiting - 1u) & ~waiting);
-        const sk_iN members = listed & (record == records[lane]) & (f.kz == axes[lane]);
-        const sk_cell_list list = tables.cells[(sk_u32)records[lane]];
-        const sk_u32 start = list.offset + first, left = list.count - first;
-        sk_viewpoint_lanes from;
-        from.o = f.o;
-        from.kz = (sk_u32)axes[lane];
-        from.kx = from.kz == 2u ? 0u : from.kz + 1u;
-        from.ky = from.kx == 2u ? 0u : from.kx + 1u;
-        candidates = candidates | (members & sk_test_one_list(tables, f.ray, from, tables.references + start,
-                                                              sk_min_u32(left, SK_ROUND)));
-        offset = sk_select_i(members, sk_same_i((sk_i32)start), offset);
-        first = left > SK_ROUND ? first + SK_ROUND : 0u;
-        if (first == 0u) waiting &= ~sk_lane_bits(members);
-        if (first != 0u || waiting == 0u) {
-            while (sk_any_lane(candidates)) {
-                const sk_iN some = candidates != sk_same_i(0);
-                const sk_iN number =
-                    sk_gather_i(tables.references, (offset + sk_lowest_bits(candidates)) & some, 1u);
-                f.best = sk_test_candidates(
-                    tables, params, f.ray,
-                    sk_select_i(some & (number != f.skip), number, sk_same_i((sk_i32)SETKA_NO_HIT)), f.best);
-                candidates = candidates & (candidates - 1);
-            }
-        }
-    } while (waiting != 0u);
-    return f.best;
+        const sk_u32 lanes = waiting & sk_lane_bits((f->record == records[lane]) & (f->kz == axes[lane]));
+        tasks[count].list = tables.cells[(sk_u32)records[lane]];
+        tasks[count].flight = number;
+        tasks[count].kz = (sk_u32)axes[lane];
+        tasks[count].lanes = lanes;
+        count += 1u;
+        waiting &= ~lanes;
+    }
+    return count;
 }
 
 /**
- * Walks the grid, past empty space in large steps and past the triangles `skip`. `any`, a compile-time choice
- * of the entry, ends a lane at the first hit it finds.
+ * Tests a list: which triangles are candidates. They go to the accurate test later, with those of the flight's other lists, since that is long
+ * and few triangles come to it; those of a list that has more than SK_ROUND triangles do at once.
  */
-SK_FUNCTION sk_best_lanes sk_walk_grid_lanes(SetkaGridHeader grid, sk_trace_params params, sk_ray_lanes ray,
-                                             sk_grid_tables tables, sk_iN skip, const int any) {
-    const sk_span_lanes span = sk_limit_lanes(ray);
-    sk_fN last = span.w1; /* nothing beyond this parameter is of interest */
-    sk_iN walking = span.meets;
-    sk_flight f = sk_take_off(grid, ray, span, skip);
-    while (sk_any_lane(walking)) {
-        const sk_listed_lanes lists = sk_look_lanes(grid, tables, &f.at);
-        const sk_iN listed = walking & lists.some;
-        if (sk_any_lane(listed)) {
-            f.best = sk_test_lists(tables, params, f, listed, sk_records_of(lists.in));
-            const sk_iN found = f.best.triangle != sk_same_i((sk_i32)SETKA_NO_HIT);
-            last = sk_select_f(found, sk_min_f(f.best.w, span.w1), span.w1);
-            if (any) walking = walking & ~found;
+SK_FUNCTION void sk_do_task(sk_grid_tables tables, sk_trace_params params, sk_flight* flights, sk_task task) {
+    sk_flight* const f = flights + task.flight;
+#define SK_BIT_OF(k) 1 << (k)
+    const sk_iN lanes = (sk_same_i((sk_i32)task.lanes) & SK_INTS(SK_BIT_OF)) != sk_same_i(0);
+#undef SK_BIT_OF
+    sk_viewpoint_lanes from;
+    from.o = f->o;
+    from.kz = task.kz;
+    from.kx = from.kz == 2u ? 0u : from.kz + 1u;
+    from.ky = from.kx == 2u ? 0u : from.kx + 1u;
+    if (task.list.count <= SK_ROUND) {
+        const sk_iN found = sk_test_one_list(tables, f->ray, from, tables.references + task.list.offset, task.list.count);
+        f->candidates = f->candidates | (lanes & found);
+        f->offset = sk_select_i(lanes, sk_same_i((sk_i32)task.list.offset), f->offset);
+    } else {
+        for (sk_u32 first = 0u; first < task.list.count; first += SK_ROUND) {
+            const sk_u32 start = task.list.offset + first, count = sk_min_u32(task.list.count - first, SK_ROUND);
+            const sk_iN found = sk_test_one_list(tables, f->ray, from, tables.references + start, count);
+            sk_test_all_candidates(tables, params, f, lanes & found, sk_same_i((sk_i32)start));
         }
-        walking = sk_leave_lanes(&f.at, walking, last);
     }
-    return f.best;
+}
+
+/**
+ * Walks the grid with the first `count` flights, past empty space in large steps and past the triangles `skip`. `any`, a compile-time choice
+ * of the entry, ends a lane at the first hit it finds. Which flights go through a stage is written down without branches.
+ */
+SK_FUNCTION void sk_walk_grid_lanes(SetkaGridHeader grid, sk_trace_params params, sk_flight* flights, sk_u32 count,
+                                    sk_grid_tables tables, const int any) {
+    sk_u32 walking[SK_FLIGHTS + 1u], listed[SK_FLIGHTS + 1u], hopeful[SK_FLIGHTS + 1u];
+    sk_task tasks[SK_FLIGHTS * SK_WIDTH];
+    sk_u32 walking_count = 0u;
+    for (sk_u32 k = 0u; k < count; ++k) {
+        walking[walking_count] = k;
+        walking_count += sk_any_lane(flights[k].walking) ? 1u : 0u;
+    }
+    while (walking_count != 0u) {
+        sk_u32 listed_count = 0u, task_count = 0u, hopeful_count = 0u, still_count = 0u;
+        for (sk_u32 k = 0u; k < walking_count; ++k) {
+            sk_flight* const f = flights + walking[k];
+            const sk_listed_lanes lists = sk_look_lanes(grid, tables, &f->at);
+            f->listed = f->walking & lists.some;
+            f->record = sk_records_of(lists.in);
+            listed[listed_count] = walking[k];
+            listed_count += sk_any_lane(f->listed) ? 1u : 0u;
+        }
+        for (sk_u32 k = 0u; k < listed_count; ++k)
+            task_count = sk_add_tasks(tables, flights, listed[k], tasks, task_count);
+        for (sk_u32 k = 0u; k < task_count; ++k) sk_do_task(tables, params, flights, tasks[k]);
+        for (sk_u32 k = 0u; k < listed_count; ++k) {
+            hopeful[hopeful_count] = listed[k];
+            hopeful_count += sk_any_lane(flights[listed[k]].candidates) ? 1u : 0u;
+        }
+        for (sk_u32 k = 0u; k < hopeful_count; ++k) {
+            sk_flight* const f = flights + hopeful[k];
+            sk_test_all_candidates(tables, params, f, f->candidates, f->offset);
+        }
+        for (sk_u32 k = 0u; k < listed_count; ++k) {
+            sk_flight* const f = flights + listed[k];
+            const sk_iN found = f->best.triangle != sk_same_i((sk_i32)SETKA_NO_HIT);
+            f->last = sk_select_f(found, sk_min_f(f->best.w, f->end), f->end);
+            if (any) f->walking = f->walking & ~found;
+        }
+        for (sk_u32 k = 0u; k < walking_count; ++k) {
+            const sk_u32 number = walking[k];
+            sk_flight* const f = flights + number;
+            f->walking = sk_leave_lanes(&f->at, f->walking, f->last);
+            walking[still_count] = number;
+            still_count += sk_any_lane(f->walking) ? 1u : 0u;
+        }
+        walking_count = still_count;
+    }
 }
 
 #endif

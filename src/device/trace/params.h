@@ -20,6 +20,9 @@ typedef struct sk_trace_params {
     setka_u32 tiled_rays;     /* so many rays from the first on are traced tile by tile: whole rows of tiles */
 } sk_trace_params;
 
+/** How many vectors of SK_WIDTH rays a work-item of a CPU traces, if SK_WIDTH is more than 1 (grid/walk_lanes.h). */
+#define SK_FLIGHTS 8u
+
 /** Columns of a tile (tiles.h), which has SK_WIDTH rays: as many of each row. */
 #define SK_TILE_COLUMNS 4u
 
