@@ -147,6 +147,9 @@ SK_FUNCTION sk_span_lanes sk_limit_lanes(sk_ray_lanes ray) {
     return r;
 }
 
+/** How many lists a flight remembers for each axis. */
+#define SK_KNOWN 32u
+
 /** SK_WIDTH rays on their way. */
 typedef struct sk_flight {
     sk_iN number; /* of the rays */
@@ -160,6 +163,8 @@ typedef struct sk_flight {
     sk_best_lanes best;
     sk_iN listed, record;       /* lanes that have come to a list, and its record */
     sk_iN candidates, offset;   /* bit k: the lane's ray may hit triangle references[offset + k] */
+    /* Records of lists that all rays with one largest axis have been tested against, by their lowest bits. */
+    sk_u32 known[3][SK_KNOWN];
 } sk_flight;
 
 SK_FUNCTION void sk_take_off(sk_flight* f, SetkaGridHeader grid, sk_iN number, sk_ray_lanes ray, sk_iN skip) {
@@ -177,6 +182,8 @@ SK_FUNCTION void sk_take_off(sk_flight* f, SetkaGridHeader grid, sk_iN number, s
     f->at.z = sk_make_axis_lanes(grid, 2u, ray.o.z, ray.d.z, ray.inverse.z, span.w0);
     f->at.cube = sk_same_i(0);
     f->best = sk_no_hit_lanes();
+    for (sk_u32 axis = 0u; axis < 3u; ++axis)
+        for (sk_u32 k = 0u; k < SK_KNOWN; ++k) f->known[axis][k] = 0xffffffffu; /* no record: each has a triangle */
 }
 
 /** The best of `best` and the hits of the triangles `number`; none where that is SETKA_NO_HIT. */
@@ -227,15 +234,21 @@ SK_FUNCTION void sk_test_all_candidates(sk_grid_tables tables, sk_trace_params p
     }
 }
 
-/** A list that lanes of a flight have come to whose rays have the same largest axis. */
+/** A list that rays of a flight have come to whose directions have the same largest axis. */
 typedef struct sk_task {
     sk_cell_list list;
     sk_u32 flight, kz;
-    sk_u32 lanes; /* bits */
+    sk_u32 lanes; /* bits: who is to be tested, if walking and of this axis */
 } sk_task;
 
-/** Adds the lists of flight `number` to `count` tasks; up to SK_WIDTH. Their number then. */
-SK_FUNCTION sk_u32 sk_add_tasks(sk_grid_tables tables, sk_flight* flights, sk_u32 number, sk_task* tasks, sk_u32 count) {
+#define SK_ALL_LANES 0xffffffffu
+
+/**
+ * Adds the lists of flight `number` to `count` tasks; up to SK_WIDTH. Their number then. Rays that are `close` together meet the same lists sooner or
+ * later: each list is tested once, for all that walk. For others the accurate tests that this brings on cost more than it saves.
+ */
+SK_FUNCTION sk_u32 sk_add_tasks(sk_grid_tables tables, sk_flight* flights, sk_u32 number, int close, sk_task* tasks,
+                                sk_u32 count) {
     sk_flight* const f = flights + number;
     sk_u32 waiting = sk_lane_bits(f->listed);
     sk_i32 axes[SK_WIDTH], records[SK_WIDTH];
@@ -244,13 +257,15 @@ SK_FUNCTION sk_u32 sk_add_tasks(sk_grid_tables tables, sk_flight* flights, sk_u3
     f->candidates = sk_same_i(0);
     f->offset = sk_same_i(0);
     while (waiting != 0u) {
-        const sk_u32 lane = sk_popcount((waiting - 1u) & ~waiting);
+        const sk_u32 lane = sk_popcount((waiting - 1u) & ~waiting), record = (sk_u32)records[lane];
         const sk_u32 lanes = waiting & sk_lane_bits((f->record == records[lane]) & (f->kz == axes[lane]));
-        tasks[count].list = tables.cells[(sk_u32)records[lane]];
+        sk_u32* const known = &f->known[axes[lane]][record % SK_KNOWN];
+        tasks[count].list = tables.cells[record];
         tasks[count].flight = number;
         tasks[count].kz = (sk_u32)axes[lane];
-        tasks[count].lanes = lanes;
-        count += 1u;
+        tasks[count].lanes = close ? SK_ALL_LANES : lanes;
+        count += *known != record ? 1u : 0u;
+        *known = close ? record : *known;
         waiting &= ~lanes;
     }
     return count;
@@ -258,28 +273,29 @@ SK_FUNCTION sk_u32 sk_add_tasks(sk_grid_tables tables, sk_flight* flights, sk_u3
 
 /**
  * Tests a list: which triangles are candidates. They go to the accurate test later, with those of the flight's other lists, since that is long
- * and few triangles come to it; those of a list that has more than SK_ROUND triangles do at once.
+ * and few triangles come to it; at once only where a lane has some already, of another list or of triangles before.
  */
 SK_FUNCTION void sk_do_task(sk_grid_tables tables, sk_trace_params params, sk_flight* flights, sk_task task) {
     sk_flight* const f = flights + task.flight;
 #define SK_BIT_OF(k) 1 << (k)
-    const sk_iN lanes = (sk_same_i((sk_i32)task.lanes) & SK_INTS(SK_BIT_OF)) != sk_same_i(0);
+    const sk_iN of_task = (sk_same_i((sk_i32)task.lanes) & SK_INTS(SK_BIT_OF)) != sk_same_i(0);
 #undef SK_BIT_OF
+    const sk_iN lanes = f->walking & of_task & (f->kz == (sk_i32)task.kz);
     sk_viewpoint_lanes from;
     from.o = f->o;
     from.kz = task.kz;
     from.kx = from.kz == 2u ? 0u : from.kz + 1u;
     from.ky = from.kx == 2u ? 0u : from.kx + 1u;
-    if (task.list.count <= SK_ROUND) {
-        const sk_iN found = sk_test_one_list(tables, f->ray, from, tables.references + task.list.offset, task.list.count);
-        f->candidates = f->candidates | (lanes & found);
-        f->offset = sk_select_i(lanes, sk_same_i((sk_i32)task.list.offset), f->offset);
-    } else {
-        for (sk_u32 first = 0u; first < task.list.count; first += SK_ROUND) {
-            const sk_u32 start = task.list.offset + first, count = sk_min_u32(task.list.count - first, SK_ROUND);
-            const sk_iN found = sk_test_one_list(tables, f->ray, from, tables.references + start, count);
-            sk_test_all_candidates(tables, params, f, lanes & found, sk_same_i((sk_i32)start));
+    for (sk_u32 first = 0u; first < task.list.count; first += SK_ROUND) {
+        const sk_u32 start = task.list.offset + first, count = sk_min_u32(task.list.count - first, SK_ROUND);
+        const sk_iN found = lanes & sk_test_one_list(tables, f->ray, from, tables.references + start, count);
+        const sk_iN has_found = found != sk_same_i(0);
+        if (sk_any_lane(f->candidates & has_found)) {
+            sk_test_all_candidates(tables, params, f, f->candidates, f->offset);
+            f->candidates = sk_same_i(0);
         }
+        f->candidates = f->candidates | found;
+        f->offset = sk_select_i(has_found, sk_same_i((sk_i32)start), f->offset);
     }
 }
 
@@ -307,7 +323,7 @@ SK_FUNCTION void sk_walk_grid_lanes(SetkaGridHeader grid, sk_trace_params params
             listed_count += sk_any_lane(f->listed) ? 1u : 0u;
         }
         for (sk_u32 k = 0u; k < listed_count; ++k)
-            task_count = sk_add_tasks(tables, flights, listed[k], tasks, task_count);
+            task_count = sk_add_tasks(tables, flights, listed[k], params.tiled_rays != 0u, tasks, task_count);
         for (sk_u32 k = 0u; k < task_count; ++k) sk_do_task(tables, params, flights, tasks[k]);
         for (sk_u32 k = 0u; k < listed_count; ++k) {
             hopeful[hopeful_count] = listed[k];
