@@ -70,8 +70,8 @@ SK_FUNCTION sk_iN sk_leave_lanes(sk_place_lanes* at, sk_iN moving, sk_fN last) {
                 low_z = (at->z.index & mask) - back;
     const sk_fN wx = sk_exit_lanes(at->x, low_x), wy = sk_exit_lanes(at->y, low_y),
                 wz = sk_exit_lanes(at->z, low_z);
-    const sk_iN through_x = (wx <= wy) & (wx <= wz), through_y = ~through_x & (wy <= wz);
-    const sk_fN w = sk_select_f(through_x, wx, sk_select_f(through_y, wy, wz));
+    const sk_fN w = sk_min_f(sk_min_f(wx, wy), wz);
+    const sk_iN through_x = wx == w, through_y = ~through_x & (wy == w);
     const sk_iN goes = moving & ~(last <= w);
     at->x.index = sk_select_i(goes, sk_land_lanes(at->x, low_x, through_x, w), at->x.index);
     at->y.index = sk_select_i(goes, sk_land_lanes(at->y, low_y, through_y, w), at->y.index);
