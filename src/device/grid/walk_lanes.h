@@ -161,7 +161,8 @@ typedef struct sk_flight {
     sk_iN walking;
     sk_place_lanes at;
     sk_best_lanes best;
-    sk_iN listed, record;       /* lanes that have come to a list, and its record */
+    sk_iN listed;               /* lanes that have come to a list, */
+    sk_found_lanes found;       /* and where it is */
     sk_iN candidates, offset;   /* bit k: the lane's ray may hit triangle references[offset + k] */
     /* Records of lists that all rays with one largest axis have been tested against, by their lowest bits. */
     sk_u32 known[3][SK_KNOWN];
@@ -250,15 +251,16 @@ typedef struct sk_task {
 SK_FUNCTION sk_u32 sk_add_tasks(sk_grid_tables tables, sk_flight* flights, sk_u32 number, int close, sk_task* tasks,
                                 sk_u32 count) {
     sk_flight* const f = flights + number;
+    const sk_iN all_records = sk_records_of(f->found);
     sk_u32 waiting = sk_lane_bits(f->listed);
     sk_i32 axes[SK_WIDTH], records[SK_WIDTH];
     sk_store_i(f->kz, axes);
-    sk_store_i(f->record, records);
+    sk_store_i(all_records, records);
     f->candidates = sk_same_i(0);
     f->offset = sk_same_i(0);
     while (waiting != 0u) {
         const sk_u32 lane = sk_popcount((waiting - 1u) & ~waiting), record = (sk_u32)records[lane];
-        const sk_u32 lanes = waiting & sk_lane_bits((f->record == records[lane]) & (f->kz == axes[lane]));
+        const sk_u32 lanes = waiting & sk_lane_bits((all_records == records[lane]) & (f->kz == axes[lane]));
         sk_u32* const known = &f->known[axes[lane]][record % SK_KNOWN];
         tasks[count].list = tables.cells[record];
         tasks[count].flight = number;
@@ -318,7 +320,7 @@ SK_FUNCTION void sk_walk_grid_lanes(SetkaGridHeader grid, sk_trace_params params
             sk_flight* const f = flights + walking[k];
             const sk_listed_lanes lists = sk_look_lanes(grid, tables, &f->at);
             f->listed = f->walking & lists.some;
-            f->record = sk_records_of(lists.in);
+            f->found = lists.in;
             listed[listed_count] = walking[k];
             listed_count += sk_any_lane(f->listed) ? 1u : 0u;
         }
