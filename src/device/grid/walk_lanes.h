@@ -302,7 +302,7 @@ SK_FUNCTION void sk_do_task(sk_grid_tables tables, sk_trace_params params, sk_fl
 }
 
 /**
- * Walks the grid with the first `count` flights, past empty space in large steps and past the triangles `skip`. `any`, a compile-time choice
+ * Walks the grid with the first `count` flights, past empty space in large steps and past the triangle that each ray skips. `any`, a compile-time choice
  * of the entry, ends a lane at the first hit it finds. Which flights go through a stage is written down without branches.
  */
 SK_FUNCTION void sk_walk_grid_lanes(SetkaGridHeader grid, sk_trace_params params, sk_flight* flights, sk_u32 count,
