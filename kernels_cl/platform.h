@@ -45,6 +45,7 @@
 typedef uint sk_u32;
 typedef int sk_i32;
 typedef ulong sk_u64;
+typedef ushort sk_u16;
 
 #define sk_global_id() ((sk_u32)get_global_id(0))
 #define sk_local_id() ((sk_u32)get_local_id(0))

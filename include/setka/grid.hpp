@@ -12,6 +12,8 @@ namespace setka {
 
 /// How the lists of the cells come about. The tables are the same in any case.
 enum class CellTables {
+    Auto,           ///< Bins on CPUs whose drivers compile vectors well, else Scatter
+    Bins,           ///< runs of triangles hand their cells to bins of 16 x 16 x 16 cells, each of which makes its lists alone: without atomics
     Scatter,        ///< triangles are counted in their cells, take places in the lists, and each list is put in order
     RunBoundaries,  ///< pairs are sorted by cell; each compares its cell with its neighbours': reads the pairs once
     BinarySearch,   ///< the same, but each cell searches for its first and last pair, as in section 2.3 of the paper
@@ -24,7 +26,7 @@ struct GridOptions {
     float density = 8;
     /// The most cells along one axis, from 1 to 4096.
     std::uint32_t max_cells_per_axis = 2048;
-    CellTables cell_tables = CellTables::Scatter;
+    CellTables cell_tables = CellTables::Auto;
 };
 
 /// Cells of a grid as options and bounds determine them, computed on the host.
@@ -65,7 +67,7 @@ class GridPlan {
   public:
     [[nodiscard]] const ::SetkaGridHeader& header() const noexcept { return header_; }
     [[nodiscard]] std::uint64_t pair_count() const noexcept { return header_.reference_count; }
-    /// Rows of cells that are work-items of their own: with CellTables::Scatter those of large triangles, else all.
+    /// Rows of cells that are work-items of their own: with CellTables::Scatter those of large triangles, with Bins none, else all.
     [[nodiscard]] std::uint64_t row_count() const noexcept { return row_count_; }
     /// Bytes of the finished grid's sections.
     [[nodiscard]] std::uint64_t table_bytes() const noexcept { return table_bytes_; }

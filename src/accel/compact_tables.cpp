@@ -88,7 +88,8 @@ BlockTotals totals_of(const Report& report) noexcept {
             report[SK_TOTAL_ROWS],
             report[SK_TOTAL_LONG],
             report[SK_TOTAL_FOUND],
-            report[SK_TOTAL_PIECES]};
+            report[SK_TOTAL_PIECES],
+            report[SK_TOTAL_BINNED_LOW] | std::uint64_t(report[SK_TOTAL_BINNED_HIGH]) << 32};
 }
 
 bool has_header(const Report& report, const ::SetkaGridHeader& header) noexcept {

@@ -33,6 +33,7 @@ struct BlockTotals {
     std::uint32_t rows = 0;
     std::uint32_t long_rows = 0, found_long_rows = 0;
     std::uint32_t pieces = 0;        ///< of lists that one work-item does not sort alone
+    std::uint64_t binned_pairs = 0;  ///< instead of pieces, where there are bins
 };
 
 /// Words of kernels to each other and the host, all 0: device/grid/limits.h.

@@ -21,7 +21,9 @@ void check_dims(const ::SetkaGridHeader& header) {
 }  // namespace
 
 const char* to_string(CellTables tables) noexcept {
-    return tables == CellTables::Scatter         ? "scatter"
+    return tables == CellTables::Auto            ? "auto"
+           : tables == CellTables::Bins          ? "bins"
+           : tables == CellTables::Scatter       ? "scatter"
            : tables == CellTables::RunBoundaries ? "run-boundaries"
                                                  : "binary-search";
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "accel/binned_lists.hpp"
 #include "accel/compact_tables.hpp"
 #include "accel/grid_limits.hpp"
 #include "accel/grid_resolution.hpp"
@@ -24,12 +25,14 @@ struct GridStart {
     const backend::Queue* queue = nullptr;
     CellTables cell_tables{};
     StartedTransform transform;
+    BinnedCount bins;       ///< one of two, or neither
     ScatteredCount count;
     std::optional<Download<std::uint32_t>> report;  ///< on its way, so that plan() waits for nothing that is enqueued later
 };
 
-/// What a plan keeps for the build: one of two.
+/// What a plan keeps for the build: one of three.
 struct GridCount {
+    std::optional<BinnedCount> binned;
     std::optional<ScatteredCount> scattered;
     std::optional<SortedCount> sorted;
 };
@@ -75,17 +78,18 @@ class UniformGridBuilder final : public GridBuilder {
         const WorldGeometry& world = start->transform.geometry;
         // Since start() other things may have come and gone.
         const GridLimits limits(queue.device(), options_,
-                                world.triangles.size_bytes() +
-                                    started_bytes(queue.device(), world.triangle_count, start->count));
+                                world.triangles.size_bytes() + started_bytes(queue.device(), *start));
         GridPlan plan;
         plan.geometry_ = std::move(start->transform.geometry);
         const Report words = take_report(queue, *start);
         take_bounds(words, plan.geometry_);
         const GridResolution resolution =
             grid_resolution(plan.geometry_.bounds, plan.geometry_.triangle_count, options_);
-        limits.check_cells(resolution);
+        // Bins do without a counter for each cell.
+        if (method_on(queue.device()) != CellTables::Bins || resolution.cell_count() > most_entries)
+            limits.check_cells(resolution);
         plan.header_ = make_header(plan.geometry_, resolution);
-        const std::uint64_t stage_bytes = count(queue, plan, limits, std::move(start->count), words);
+        const std::uint64_t stage_bytes = count(queue, plan, resolution, limits, *start, words);
         plan.peak_bytes_ = plan.geometry_.triangles.size_bytes() + std::max(stage_bytes, report_bytes);
         limits.check_budget(plan.peak_bytes_, "for " + std::to_string(plan.pair_count()) + " pairs in " +
                                                   std::to_string(plan.header_.cell_count) + " cells");
@@ -98,9 +102,10 @@ class UniformGridBuilder final : public GridBuilder {
         const auto count = std::exchange(plan.count_, {});
         if (!count)
             throw Error(ErrorCategory::InvalidArgument, "plan was built or moved from before; it makes one grid");
-        if (count->scattered) {
+        if (count->binned || count->scattered) {
             CompactTables tables =
-                build_scattered(queue, plan.geometry_, header, std::move(*count->scattered));
+                count->binned ? build_binned(queue, header, std::move(*count->binned))
+                              : build_scattered(queue, plan.geometry_, header, std::move(*count->scattered));
             queue.impl().begin_stage("other");
             return Grid(std::move(plan.geometry_), header, std::move(tables));
         }
@@ -113,14 +118,30 @@ class UniformGridBuilder final : public GridBuilder {
     }
 
   private:
+    [[nodiscard]] CellTables method_on(const Device& device) const {
+        if (options_.cell_tables != CellTables::Auto) return options_.cell_tables;
+        return prefers_bins(device) ? CellTables::Bins : CellTables::Scatter;
+    }
+
+    [[nodiscard]] static std::uint64_t started_bytes(const Device& device, const GridStart& start) {
+        const std::uint32_t n = start.transform.geometry.triangle_count;
+        return start.bins.room.blocks != 0 ? setka::started_bytes(device, n, start.bins)
+                                           : setka::started_bytes(device, n, start.count);
+    }
+
     /// What start() does, but for the report.
     [[nodiscard]] StartedGrid begin(Queue& queue, const DeviceScene& scene) const {
         const GridLimits limits(queue.device(), options_);
         StartedGrid started;
         started.start_ = std::make_shared<GridStart>(
-            GridStart{&queue.impl(), options_.cell_tables, start_transform(queue, scene), {}, {}});
+            GridStart{&queue.impl(), options_.cell_tables, start_transform(queue, scene), {}, {}, {}});
         GridStart& start = *started.start_;
-        if (options_.cell_tables == CellTables::Scatter)
+        const CellTables method = method_on(queue.device());
+        if (method == CellTables::Bins) {
+            start.bins = start_bins(queue, start.transform, options_, limits);
+            start.count.report = start.transform.report;
+        }
+        if (method == CellTables::Scatter)
             start.count = start_count(queue, start.transform, options_, limits);
         return started;
     }
@@ -133,15 +154,28 @@ class UniformGridBuilder final : public GridBuilder {
         return words;
     }
 
-    /// Counts, and says how many bytes counting and building hold beside the world's triangles.
-    [[nodiscard]] std::uint64_t count(Queue& queue, GridPlan& plan, const GridLimits& limits, ScatteredCount started,
-                                      const Report& words) const {
+    /// Counts, and says how many bytes counting and building hold beside the world's triangles. What is no way to the grid leaves it to the next.
+    [[nodiscard]] std::uint64_t count(Queue& queue, GridPlan& plan, const GridResolution& resolution,
+                                      const GridLimits& limits, GridStart& start, const Report& words) const {
         ::SetkaGridHeader& header = plan.header_;
         plan.count_ = std::make_shared<GridCount>();
         std::uint64_t held_bytes = 0;
-        if (options_.cell_tables == CellTables::Scatter) {
+        const CellTables method = method_on(queue.device());
+        if (method == CellTables::Bins) {
+            plan.count_->binned =
+                finish_bins(queue, plan.geometry_, header, options_, limits, std::move(start.bins), words, held_bytes);
+            if (const auto& binned = plan.count_->binned) {
+                plan.table_bytes_ = table_bytes_of(plan.geometry_, header, binned->cells);
+                limits.check_allocation(std::uint64_t(binned->cells) * cell_words, "cells");
+                return std::max(held_bytes, binned_bytes(queue.device(), header, *binned));
+            }
+            limits.check_cells(resolution);
+        }
+        if (method == CellTables::Bins || method == CellTables::Scatter) {
+            std::uint64_t own_bytes = 0;
             plan.count_->scattered =
-                finish_count(queue, plan.geometry_, header, limits, std::move(started), words, held_bytes);
+                finish_count(queue, plan.geometry_, header, limits, std::move(start.count), words, own_bytes);
+            held_bytes = std::max(held_bytes, own_bytes);
             if (const auto& scattered = plan.count_->scattered) {
                 plan.row_count_ = scattered->rows;
                 plan.table_bytes_ = table_bytes_of(plan.geometry_, header, scattered->cells);

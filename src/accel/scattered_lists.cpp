@@ -37,9 +37,8 @@ std::uint64_t triangles_a_launch(const Device& device) {
     return device.info().type == DeviceType::Cpu ? 1u << 16 : 1u << 22;
 }
 
-/// Triangles that one work-item counts: where it does several side by side, enough to find such as are alike.
+/// Triangles that one work-item counts.
 std::uint32_t triangles_an_item(const Device& device) {
-    if (device.impl()->width() > 1) return 64;
     return device.options().primitives == PrimitiveShape::Serial ? 8 : 1;
 }
 

@@ -166,7 +166,9 @@ void add_grid_options(CLI::App& app, GridOptions& options) {
         ->group(group);
     add_choice<CellTables>(
         app, "--cell-tables", options.cell_tables,
-        {{"scatter", CellTables::Scatter},
+        {{"auto", CellTables::Auto},
+         {"bins", CellTables::Bins},
+         {"scatter", CellTables::Scatter},
          {"run-boundaries", CellTables::RunBoundaries},
          {"binary-search", CellTables::BinarySearch}},
         "how the cells' lists come about; the result is the same")

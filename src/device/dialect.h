@@ -17,7 +17,7 @@
  *   SK_DOUBLE                whether there is `double`, of which + - * / and conversions are correctly rounded too: only what the host does
  *                            again and compares may depend on it (an integer for #if)
  *   SK_BARRIER()             all work-items of the group; orders local memory; in uniform control flow only
- *   sk_u32 sk_i32 sk_u64     integers
+ *   sk_u32 sk_i32 sk_u64     integers; sk_u16 in tables only
  *   sk_global_id() sk_local_id() sk_group_id() sk_local_size()   as sk_u32
  *   sk_float_bits(f) sk_bits_float(u)                            bit casts
  *   sk_double_bits(d) sk_bits_double(u)                          the same of sk_u64, where SK_DOUBLE

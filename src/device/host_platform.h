@@ -38,6 +38,7 @@ static_assert(FLT_EVAL_METHOD == 0, "float expressions must be rounded to float 
 typedef std::uint32_t sk_u32;
 typedef std::int32_t sk_i32;
 typedef std::uint64_t sk_u64;
+typedef std::uint16_t sk_u16;
 
 inline thread_local sk_u32 sk_host_group = 0;
 

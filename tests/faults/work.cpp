@@ -42,10 +42,11 @@ Work building(const std::string& name, setka::CellTables tables) {
 }
 
 /// Of a sheet, whose cells are one thick but whose blocks are not: counted again when the host has seen the bounds.
-Work building_flat(const std::string& name) {
-    return {name, [](Queue& queue, const World&) {
+Work building_flat(const std::string& name, setka::CellTables tables) {
+    return {name, [tables](Queue& queue, const World&) {
                 const setka::DeviceScene sheet(queue, support::sheet(16));
-                return grid_bytes(queue, setka::make_grid_builder({.density = 16})->build(queue, sheet));
+                const auto builder = setka::make_grid_builder({.density = 16, .cell_tables = tables});
+                return grid_bytes(queue, builder->build(queue, sheet));
             }};
 }
 
@@ -204,8 +205,10 @@ const std::vector<Work>& all_work() {
                  .add(std::vector{plan.pair_count(), plan.row_count(), plan.table_bytes()})
                  .get();
          }},
+        building("build_bins", setka::CellTables::Bins),
         building("build_scatter", setka::CellTables::Scatter),
-        building_flat("build_flat"),
+        building_flat("build_flat", setka::CellTables::Scatter),
+        building_flat("build_flat_bins", setka::CellTables::Bins),
         building("build_run_boundaries", setka::CellTables::RunBoundaries),
         building("build_binary_search", setka::CellTables::BinarySearch),
         {"brute_force",

@@ -4,6 +4,7 @@
 #include "device/host_platform.h"
 // The kernels.
 #include "kernels_cl/all_hits.cl"
+#include "kernels_cl/bins.cl"
 #include "kernels_cl/blocks.cl"
 #include "kernels_cl/grid.cl"
 #include "kernels_cl/probe.cl"

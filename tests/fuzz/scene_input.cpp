@@ -98,7 +98,7 @@ setka::GridOptions read_grid_options(Input& input) {
     const std::uint8_t most = kind / 8 % 8;
     options.max_cells_per_axis = most < std::size(mosts) ? mosts[most] : input.raw<std::uint32_t>();
     if (kind & 64) options.cell_tables = setka::CellTables::BinarySearch;
-    if (kind & 128) options.cell_tables = setka::CellTables::RunBoundaries;
+    if (kind & 128) options.cell_tables = kind & 64 ? setka::CellTables::Bins : setka::CellTables::RunBoundaries;
     return options;
 }
 

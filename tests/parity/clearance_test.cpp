@@ -95,7 +95,7 @@ TEST_P(Clearance, IsThatOfEveryBlock) {
     const Case& one = *std::ranges::find(cases(), other(), &Case::name);
     setka::Queue queue = device().make_queue();
     const setka::DeviceScene scene(queue, one.make());
-    for (const auto tables : {setka::CellTables::Scatter, setka::CellTables::RunBoundaries}) {
+    for (const auto tables : {setka::CellTables::Bins, setka::CellTables::Scatter, setka::CellTables::RunBoundaries}) {
         const auto builder = setka::make_grid_builder({.density = one.density, .cell_tables = tables});
         const setka::Grid grid = builder->build(queue, scene);
         const Blocks blocks(queue, grid);

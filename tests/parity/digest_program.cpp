@@ -98,7 +98,7 @@ class AllKernels {
         const setka::Grid grid = build(setka::CellTables::Scatter);
         print_line(name + " scatter", grid.digest(queue_).to_string());
         print_all_hits(name + " grid", grid, rays);
-        for (const auto tables : {setka::CellTables::RunBoundaries, setka::CellTables::BinarySearch})
+        for (const auto tables : {setka::CellTables::Bins, setka::CellTables::RunBoundaries, setka::CellTables::BinarySearch})
             print_line(name + " " + to_string(tables), build(tables).digest(queue_).to_string());
         for (const auto step : {setka::GridStep::Dda, setka::GridStep::BranchFree})
             print_rays(name + (step == setka::GridStep::Dda ? " dda" : " branch_free"), grid,

@@ -17,7 +17,7 @@ namespace support {
 
 /// Every way to a grid's tables.
 inline constexpr setka::CellTables all_cell_tables[] = {
-    setka::CellTables::Scatter, setka::CellTables::RunBoundaries, setka::CellTables::BinarySearch};
+    setka::CellTables::Bins, setka::CellTables::Scatter, setka::CellTables::RunBoundaries, setka::CellTables::BinarySearch};
 
 struct LaunchShape {
     std::string name;

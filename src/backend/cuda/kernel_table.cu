@@ -4,6 +4,7 @@
 #include "backend/cuda/kernel_table.hpp"
 
 #include "all_hits.cu"
+#include "bins.cu"
 #include "blocks.cu"
 #include "grid.cu"
 #include "probe.cu"

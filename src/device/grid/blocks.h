@@ -91,6 +91,47 @@ SK_FUNCTION sk_u32 sk_rank_of(sk_block block, sk_u32 bit) {
                      : sk_popcount(block.mask_low) + sk_popcount(block.mask_high & below);
 }
 
+/** Counters of four cells, read at once. */
+typedef struct SK_ALIGNED(16) sk_four_counts {
+    sk_u32 a, b, c, d;
+} sk_four_counts;
+
+/** What is known of a block while its counters are read. */
+typedef struct sk_tally {
+    sk_u64 mask, pairs;
+    sk_u32 longest;
+} sk_tally;
+
+SK_FUNCTION sk_tally sk_no_tally(void) {
+    sk_tally r;
+    r.mask = 0u;
+    r.pairs = 0u;
+    r.longest = 0u;
+    return r;
+}
+
+/** The same with the cells from bit 4 * row on. */
+SK_FUNCTION sk_tally sk_tally_row(sk_tally tally, sk_u32 row, sk_four_counts counts) {
+    const sk_u32 most = sk_max_u32(sk_max_u32(counts.a, counts.b), sk_max_u32(counts.c, counts.d));
+    const sk_u32 bits = (counts.a != 0u ? 1u : 0u) | (counts.b != 0u ? 2u : 0u) | (counts.c != 0u ? 4u : 0u) |
+                        (counts.d != 0u ? 8u : 0u);
+    sk_tally r;
+    r.mask = tally.mask | (sk_u64)bits << 4u * row;
+    r.pairs = tally.pairs + (((sk_u64)counts.a + counts.b) + ((sk_u64)counts.c + counts.d));
+    r.longest = sk_max_u32(tally.longest, most);
+    return r;
+}
+
+/** The block's record until the lists are laid out: `clearance` is the number of its pairs. */
+SK_FUNCTION sk_block sk_counted_block(sk_tally tally) {
+    sk_block r;
+    r.mask_low = (sk_u32)tally.mask;
+    r.mask_high = (sk_u32)(tally.mask >> 32);
+    r.first = 0u;
+    r.clearance = tally.pairs >> 32 != 0u ? 0xffffffffu : (sk_u32)tally.pairs;
+    return r;
+}
+
 /**
  * Marks: a bit for each block along x, set where the block is not empty. Word i of a row of blocks has the 32 from block 16 i - 8 on, so that
  * one word has all blocks that are near one of its middle; most blocks have two bits.

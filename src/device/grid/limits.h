@@ -26,6 +26,11 @@
 /** Lists longer than this are copied by one work-item a reference, others by one a list. */
 #define SK_LONG_LIST 1024u
 
+/** Bins (bins.h): cells along each axis and in all; and so many bins have the places of their pairs found by one work-item. */
+#define SK_BIN_SIDE 16u
+#define SK_BIN_CELLS 4096u
+#define SK_BIN_PART 64u
+
 /**
  * What a build's kernels tell each other and the host, in one table of SK_REPORT words that are 0 at first: totals, what the transform found, and
  * the header of the grid in which is counted.
@@ -39,6 +44,8 @@
 #define SK_TOTAL_FOUND 6u      /* the same, of those counted so far */
 #define SK_TOTAL_PIECES 7u     /* of lists that are too long for one work-item */
 #define SK_TOTAL_CUT 8u        /* pieces cut so far */
+#define SK_TOTAL_BINNED_LOW 7u /* pairs in bins: in builds with these, which cut no list into pieces */
+#define SK_TOTAL_BINNED_HIGH 8u
 #define SK_TOTALS 9u           /* so many words are totals */
 #define SK_REPORT_BAD 9u       /* the complement of the lowest triangle that is not finite, or 0 */
 #define SK_REPORT_LOWER 10u    /* the complements of the bounds' lower corner, as integers of the same order: all are maxima */

@@ -117,84 +117,6 @@ SK_FUNCTION void sk_count_triangle(sk_u32 i, sk_reach reach, SetkaGridHeader gri
     }
 }
 
-#if SK_WIDTH > 1
-
-/** Triangles whose cells are found side by side: numbers, vertices and corners, equal components beside each other. */
-typedef struct sk_waiting {
-    sk_u32 count;
-    sk_u32 triangles[SK_WIDTH];
-    sk_u32 x[SK_WIDTH], y[SK_WIDTH], z[SK_WIDTH];
-    float vertices[9][SK_WIDTH];
-} sk_waiting;
-
-SK_FUNCTION void sk_let_wait(sk_waiting* waiting, SK_GLOBAL const float* triangles, sk_u32 i, sk_reach reach) {
-    const sk_dims corner = sk_reach_corner(reach);
-    const sk_u32 k = waiting->count;
-    waiting->triangles[k] = i;
-    waiting->x[k] = corner.x;
-    waiting->y[k] = corner.y;
-    waiting->z[k] = corner.z;
-    for (sk_u32 c = 0u; c < 9u; ++c) waiting->vertices[c][k] = triangles[(size_t)i * 9u + c];
-    waiting->count = k + 1u;
-}
-
-SK_FUNCTION sk_dims sk_waiting_corner(const sk_waiting* waiting, sk_u32 k) {
-    sk_dims r;
-    r.x = waiting->x[k];
-    r.y = waiting->y[k];
-    r.z = waiting->z[k];
-    return r;
-}
-
-SK_FUNCTION void sk_count_waiting(sk_waiting* waiting, SetkaGridHeader grid, sk_scatter out,
-                                  SK_GLOBAL sk_reach* reaches, sk_row_list list) {
-    sk_u32 masks[SK_WIDTH];
-    for (sk_u32 k = 0u; k < SK_WIDTH; ++k) {
-        sk_cell_points points;
-        points.p0 = sk_to_cells(grid, sk_make3(waiting->vertices[0][k], waiting->vertices[1][k], waiting->vertices[2][k]));
-        points.p1 = sk_to_cells(grid, sk_make3(waiting->vertices[3][k], waiting->vertices[4][k], waiting->vertices[5][k]));
-        points.p2 = sk_to_cells(grid, sk_make3(waiting->vertices[6][k], waiting->vertices[7][k], waiting->vertices[8][k]));
-        masks[k] = sk_pair_mask(grid, points, sk_waiting_corner(waiting, k));
-    }
-    for (sk_u32 k = 0u; k < waiting->count; ++k)
-        sk_count_triangle(waiting->triangles[k],
-                          sk_make_reach(sk_waiting_corner(waiting, k), SK_REACH_MASK, masks[k]), grid, out, reaches,
-                          list);
-    waiting->count = 0u;
-}
-
-/** Counts triangles first to end - 1. */
-SK_FUNCTION void sk_count_triangles(sk_u32 first, sk_u32 end, SetkaGridHeader grid, sk_scatter out,
-                                    SK_GLOBAL sk_reach* reaches, sk_row_list list) {
-    sk_waiting waiting;
-    waiting.count = 0u;
-    for (sk_u32 start = first; start < end; start += SK_WIDTH) {
-        sk_reach found[SK_WIDTH];
-        for (sk_u32 k = 0u; k < SK_WIDTH; ++k) {
-            const sk_u32 i = start + k < end ? start + k : start;
-            found[k] = sk_reach_by_box(sk_box_of(grid, sk_load_cell_points(grid, out.triangles + (size_t)i * 9u)));
-        }
-        for (sk_u32 k = 0u; k < SK_WIDTH && start + k < end; ++k)
-            if (sk_reach_kind(found[k]) == SK_REACH_PAIR) {
-                sk_let_wait(&waiting, out.triangles, start + k, found[k]);
-                if (waiting.count == SK_WIDTH) sk_count_waiting(&waiting, grid, out, reaches, list);
-            } else {
-                const sk_cell_points points = sk_load_cell_points(grid, out.triangles + (size_t)(start + k) * 9u);
-                sk_count_triangle(start + k, sk_reach_by_rule(grid, points, found[k]), grid, out, reaches, list);
-            }
-    }
-    if (waiting.count != 0u) {
-        /* The places that stay empty are a triangle's that is there. */
-        const sk_u32 count = waiting.count;
-        for (sk_u32 k = count; k < SK_WIDTH; ++k)
-            sk_let_wait(&waiting, out.triangles, waiting.triangles[0], sk_make_reach(sk_waiting_corner(&waiting, 0u), 0u, 0u));
-        waiting.count = count;
-        sk_count_waiting(&waiting, grid, out, reaches, list);
-    }
-}
-
-#else
-
 /** Counts triangles first to end - 1. */
 SK_FUNCTION void sk_count_triangles(sk_u32 first, sk_u32 end, SetkaGridHeader grid, sk_scatter out,
                                     SK_GLOBAL sk_reach* reaches, sk_row_list list) {
@@ -204,8 +126,6 @@ SK_FUNCTION void sk_count_triangles(sk_u32 first, sk_u32 end, SetkaGridHeader gr
         sk_count_triangle(i, reach, grid, out, reaches, list);
     }
 }
-
-#endif
 
 /** Puts triangle i into the lists of its cells, unless it is large. */
 SK_FUNCTION void sk_place_triangle(sk_u32 i, SetkaGridHeader grid, sk_scatter out, SK_GLOBAL const sk_reach* reaches) {
@@ -234,11 +154,6 @@ SK_FUNCTION void sk_take_listed(sk_u32 r, sk_u32 step, SetkaGridHeader grid, sk_
         }
 }
 
-/** Counters of four cells, read at once. */
-typedef struct SK_ALIGNED(16) sk_four_counts {
-    sk_u32 a, b, c, d;
-} sk_four_counts;
-
 SK_FUNCTION sk_u32 sk_pieces_of(sk_u32 count, sk_u32 alone) { return count > alone ? sk_piece_count(count) : 0u; }
 
 /** The marks of blocks lie behind the counters of as many blocks as the grid has, wherever the table ends. */
@@ -255,28 +170,18 @@ SK_FUNCTION void sk_count_block(sk_u32 b, sk_u32 alone, SetkaGridHeader grid, SK
     const sk_dims dims = sk_block_dims(sk_cell_dims(grid));
     const sk_u32 rows = b < sk_block_count(dims) ? SK_BLOCK_CELLS / 4u : 0u;
     SK_GLOBAL const sk_four_counts* own = (SK_GLOBAL const sk_four_counts*)(counters + (size_t)b * SK_BLOCK_CELLS);
-    sk_u64 pairs = 0u, mask = 0u;
-    sk_u32 longest = 0u, pieces = 0u;
-    sk_block block;
+    sk_tally tally = sk_no_tally();
+    sk_u32 pieces = 0u;
     for (sk_u32 row = 0u; row < rows; ++row) {
         const sk_four_counts counts = own[row];
-        const sk_u32 most = sk_max_u32(sk_max_u32(counts.a, counts.b), sk_max_u32(counts.c, counts.d));
-        const sk_u32 bits = (counts.a != 0u ? 1u : 0u) | (counts.b != 0u ? 2u : 0u) | (counts.c != 0u ? 4u : 0u) |
-                            (counts.d != 0u ? 8u : 0u);
-        mask |= (sk_u64)bits << 4u * row;
-        pairs += ((sk_u64)counts.a + counts.b) + ((sk_u64)counts.c + counts.d);
-        longest = sk_max_u32(longest, most);
-        if (most > alone)
+        tally = sk_tally_row(tally, row, counts);
+        if (tally.longest > alone)
             pieces += sk_pieces_of(counts.a, alone) + sk_pieces_of(counts.b, alone) +
                       (sk_pieces_of(counts.c, alone) + sk_pieces_of(counts.d, alone));
     }
-    block.mask_low = (sk_u32)mask;
-    block.mask_high = (sk_u32)(mask >> 32);
-    block.first = 0u;
-    block.clearance = pairs >> 32 != 0u ? 0xffffffffu : (sk_u32)pairs;
-    blocks[b] = block;
-    if (mask != 0u) sk_mark_block(dims, b, sk_marks_behind(counters, dims));
-    if (longest > sk_min_u32(alone, SK_LONG_LIST)) sk_atomic_max(totals + SK_TOTAL_LONGEST, longest);
+    blocks[b] = sk_counted_block(tally);
+    if (tally.mask != 0u) sk_mark_block(dims, b, sk_marks_behind(counters, dims));
+    if (tally.longest > sk_min_u32(alone, SK_LONG_LIST)) sk_atomic_max(totals + SK_TOTAL_LONGEST, tally.longest);
     if (pieces != 0u) sk_atomic_add(totals + SK_TOTAL_PIECES, pieces);
 }
 

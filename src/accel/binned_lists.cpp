@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: MIT
+#include "accel/binned_lists.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/exact_math.hpp"
+#include "core/launch.hpp"
+#include "device/grid/limits.h"
+
+namespace setka {
+
+namespace {
+
+constexpr std::uint64_t word = sizeof(std::uint32_t);
+constexpr std::uint64_t reach_words = 4;
+
+std::uint64_t divide_up(std::uint64_t a, std::uint64_t b) noexcept { return (a + b - 1) / b; }
+
+std::uint32_t bin_count(const ::SetkaGridHeader& header) noexcept {
+    std::uint64_t bins = 1;
+    for (const std::uint32_t dim : header.dims) bins *= divide_up(dim, SK_BIN_SIDE);
+    return static_cast<std::uint32_t>(bins);
+}
+
+/// Pairs that are provided for before any is seen, by density: triangles of closed surfaces reach into 1.8 (spheres) to 3.5 cells (terrain,
+/// scans) each at 8, and into as many more as cells have sides.
+std::uint64_t usual_pairs(std::uint32_t triangles, float density) {
+    const double side = exact::root(double(density), 3) / 2;
+    return static_cast<std::uint64_t>(std::ceil(double(triangles) * (1 + 4 * side * side))) + 65536;
+}
+
+/// Runs long enough to be worth their counters, and so many that cores come out even; a work-item takes a sixteenth of what a core does.
+BinRoom divided(const Device& device, std::uint32_t triangles, BinRoom room) {
+    constexpr std::uint32_t shortest = 2048, most_counters = 1u << 24;
+    const std::uint32_t shares = 16 * std::max(1u, device.info().compute_units);
+    const std::uint64_t most_runs = std::clamp<std::uint64_t>(most_counters / room.bins, 1, std::max(64u, shares));
+    room.run = static_cast<std::uint32_t>(std::max<std::uint64_t>(shortest, divide_up(triangles, most_runs)));
+    room.runs = static_cast<std::uint32_t>(divide_up(triangles, room.run));
+    room.items = std::min(room.bins, shares);
+    return room;
+}
+
+/// Room for this grid.
+BinRoom room_of(const Device& device, const ::SetkaGridHeader& header, std::uint64_t pairs) {
+    return divided(device, header.triangle_count,
+                   {.blocks = block_count(header), .bins = bin_count(header), .pairs = static_cast<std::uint32_t>(pairs)});
+}
+
+/// Room for the grid of a usual scene with so many triangles, or for none: what reaches beyond the sides is some 20 times a
+/// side of a cube of the cells, four cells deep of blocks and sixteen of bins (scattered_lists.cpp).
+BinRoom usual_room(const Device& device, std::uint32_t triangles, const GridOptions& options) {
+    const double cells = double(options.density) * triangles, side = exact::root(cells, 3);
+    const auto whole = [&](double beyond, double in_each, std::uint32_t width) {
+        const double axis = divide_up(options.max_cells_per_axis, width);
+        return std::min(std::ceil((1.25 * cells + beyond * side * side + 4096) / in_each), axis * axis * axis);
+    };
+    const double blocks = whole(20, SK_BLOCK_CELLS, 4), bins = whole(100, SK_BIN_CELLS, SK_BIN_SIDE);
+    const std::uint64_t pairs = usual_pairs(triangles, options.density);
+    if (blocks * SK_BLOCK_CELLS > double(most_entries) || pairs > most_entries) return {};
+    return divided(device, triangles,
+                   {.blocks = static_cast<std::uint32_t>(blocks),
+                    .bins = static_cast<std::uint32_t>(bins),
+                    .pairs = static_cast<std::uint32_t>(pairs)});
+}
+
+/// The bytes that both counting and placing hold, world triangles not included.
+std::uint64_t kept_bytes(const Device& device, const BinRoom& room) {
+    return report_bytes + block_sums_bytes(device, room.blocks) +
+           (room.bins + std::uint64_t(1) + divide_up(room.pairs, 2) + room.pairs +
+            std::uint64_t(room.items) * SK_BIN_CELLS + room.blocks + room.blocks * block_words) *
+               word;
+}
+
+/// The bytes that counting holds, world triangles not included.
+std::uint64_t count_bytes(const Device& device, std::uint32_t triangles, const BinRoom& room) {
+    return kept_bytes(device, room) + (triangles * reach_words + std::uint64_t(room.runs) * room.bins) * word +
+           divide_up(room.bins, SK_BIN_PART) * sizeof(std::uint64_t);
+}
+
+/// Launches a kernel over all bins, every work-item a group of its own. Where a stop can be requested, some at a time.
+template <typename... Ts>
+void launch_bins(Queue& queue, Kernel kernel, std::uint32_t bins, std::uint32_t items, const Ts&... arguments) {
+    const std::uint32_t step = queue.impl().stop_token().stop_possible() ? 4 * items : bins;
+    for (std::uint32_t first = 0; first < bins; first += std::min(step, bins - first)) {
+        const std::uint32_t end = first + std::min(step, bins - first), own = std::min(items, end - first);
+        launch_groups(queue, kernel, own, 1, end, first, own, arguments...);
+    }
+}
+
+/// The same over runs of triangles.
+template <typename... Ts>
+void launch_runs(Queue& queue, Kernel kernel, const BinRoom& room, const Ts&... arguments) {
+    const std::uint32_t step =
+        queue.impl().stop_token().stop_possible() ? std::max(1u, (1u << 16) / room.run) : room.runs;
+    for (std::uint32_t first = 0; first < room.runs; first += step) {
+        const std::uint32_t end = std::min(room.runs, first + step);
+        launch_groups(queue, kernel, end - first, 1, end, first, room.run, room.bins, arguments...);
+    }
+}
+
+/// Large triangles with so many cells at least, in units of SK_LONG_ROW, are not for bins: their rows are better spread over work-items of
+/// their own (scattered_lists.hpp).
+std::uint32_t most_units(std::uint32_t triangles) { return triangles / 4 + (1u << 14); }
+
+/// Counts the pairs of each bin of the grid in the report, in each run.
+BinnedCount enqueue_count(Queue& queue, const WorldGeometry& geometry, const Buffer<std::uint32_t>& report,
+                          const BinRoom& room) {
+    const auto parts = static_cast<std::uint32_t>(divide_up(room.bins, SK_BIN_PART));
+    BinnedCount count;
+    count.room = room;
+    count.report = report;
+    queue.impl().begin_stage("count");
+    count.reaches = queue.make_buffer<std::uint32_t>(geometry.triangle_count * reach_words, "cells of small triangles");
+    count.run_counts = queue.make_buffer<std::uint32_t>(std::uint64_t(room.runs) * room.bins, "pairs of runs in bins");
+    count.part_sums = queue.make_buffer<std::uint64_t>(parts, "sums of bins");
+    count.starts = queue.make_buffer<std::uint32_t>(room.bins + std::uint64_t(1), "starts of bins");
+    const std::uint32_t most = most_units(geometry.triangle_count);
+    launch_runs(queue, Kernel::bins_count, room, most, geometry.triangles, count.reaches, count.run_counts, report);
+    launch_groups(queue, Kernel::bins_sum, parts, 1, parts, room.bins, room.runs, count.run_counts, count.part_sums);
+    launch_groups(queue, Kernel::bins_start, parts, 1, parts, room.bins, room.runs, most, count.part_sums,
+                  count.run_counts, count.starts, report);
+    return count;
+}
+
+/// Hands every pair to its bin, if there is room, and counts the blocks' cells and pairs.
+void enqueue_bins(Queue& queue, const WorldGeometry& geometry, BinnedCount& count) {
+    const BinRoom& room = count.room;
+    queue.impl().begin_stage("bins");
+    count.pair_cells = queue.make_buffer<std::uint32_t>(divide_up(room.pairs, 2), "cells of pairs");
+    count.pair_triangles = queue.make_buffer<std::uint32_t>(room.pairs, "triangles of pairs");
+    launch_runs(queue, Kernel::bins_fill, room, room.pairs, geometry.triangles, count.reaches, count.run_counts,
+                count.pair_cells, count.pair_triangles, count.report);
+    queue.impl().begin_stage("blocks");
+    count.counters = queue.make_buffer<std::uint32_t>(std::uint64_t(room.items) * SK_BIN_CELLS, "counters of bins");
+    count.marks = queue.make_buffer<std::uint32_t>(room.blocks, "marks of blocks");
+    count.blocks = queue.make_buffer<std::uint32_t>(room.blocks * block_words, "counted blocks");
+    queue.impl().fill(*count.marks.memory(), 0, count.marks.size_bytes());
+    launch_bins(queue, Kernel::bins_tally, room.bins, room.items, room.pairs, room.blocks, count.starts,
+                count.pair_cells, count.counters, count.blocks, count.marks, count.report);
+    count.block_sums = enqueue_block_sums(queue, count.blocks, count.report);
+}
+
+/// What is left of a count whose bins have had no room for all pairs.
+BinnedCount without_bins(BinnedCount count) {
+    count.pair_cells = count.pair_triangles = count.counters = count.marks = count.blocks = {};
+    count.block_sums = {};
+    return count;
+}
+
+}  // namespace
+
+bool prefers_bins(const Device& device) { return device.impl()->width() > 1; }
+
+BinnedCount start_bins(Queue& queue, const StartedTransform& transform, const GridOptions& options,
+                       const GridLimits& limits) {
+    const Device& device = queue.device();
+    const WorldGeometry& geometry = transform.geometry;
+    const std::uint32_t n = geometry.triangle_count;
+    const BinRoom room = usual_room(device, n, options);
+    if (!device.impl()->has_doubles() || queue.stop_token().stop_possible() || room.blocks == 0 ||
+        !limits.fits_an_allocation(room.pairs) || !limits.fits_an_allocation(n * reach_words) ||
+        !limits.fits(geometry.triangles.size_bytes() + count_bytes(device, n, room))) {
+        BinnedCount nothing;
+        nothing.report = transform.report;
+        return nothing;
+    }
+    launch_items(queue, Kernel::grid_resolve, 1, room.blocks, options.density, options.max_cells_per_axis, n,
+                 geometry.instance_count, transform.report);
+    BinnedCount count = enqueue_count(queue, geometry, transform.report, room);
+    enqueue_bins(queue, geometry, count);
+    return count;
+}
+
+std::optional<BinnedCount> finish_bins(Queue& queue, const WorldGeometry& geometry, ::SetkaGridHeader& header,
+                                       const GridOptions& options, const GridLimits& limits, BinnedCount started,
+                                       const Report& words, std::uint64_t& held_bytes) {
+    const Device& device = queue.device();
+    const std::uint32_t n = header.triangle_count;
+    const std::uint64_t world = geometry.triangles.size_bytes();
+    BinnedCount count = std::move(started);
+    BlockTotals totals = totals_of(words);
+    const auto fits = [&](const BinRoom& room) {
+        return limits.fits_an_allocation(room.pairs) && limits.fits_an_allocation(n * reach_words) &&
+               limits.fits(world + count_bytes(device, n, room));
+    };
+    /// Counts in this grid, and fills bins if there is room for pairs.
+    const auto count_again = [&](std::uint64_t pairs) {
+        const BinRoom room = room_of(device, header, pairs);
+        if (!fits(room)) return false;
+        const Buffer<std::uint32_t> report = std::exchange(count, {}).report;
+        report_header(queue, report, header);
+        held_bytes = std::max(held_bytes, count_bytes(device, n, room));
+        count = enqueue_count(queue, geometry, report, room);
+        if (pairs != 0) enqueue_bins(queue, geometry, count);
+        totals = totals_of(read_report(queue, report));
+        return true;
+    };
+    const auto fill_bins = [&] {
+        BinRoom room = count.room;
+        room.pairs = static_cast<std::uint32_t>(totals.binned_pairs);
+        if (!fits(room)) return false;
+        held_bytes = std::max(held_bytes, count_bytes(device, n, room));
+        count = without_bins(std::move(count));
+        count.room = room;
+        enqueue_bins(queue, geometry, count);
+        totals = totals_of(read_report(queue, count.report));
+        return true;
+    };
+    if (count.room.blocks != 0) held_bytes = count_bytes(device, n, count.room);
+    const bool has_room = count.room.blocks >= block_count(header) && count.room.bins >= bin_count(header);
+    if (!has_room || !has_header(words, header)) {
+        // Where every launch is waited for, one more wait for the number of pairs is no matter. Else this is a sheet most likely, whose
+        // triangles lie in their cells with all of their area.
+        const std::uint64_t pairs =
+            queue.stop_token().stop_possible() ? 0 : std::min(4 * usual_pairs(n, options.density), most_entries);
+        if ((pairs == 0 || !count_again(pairs)) && !count_again(0)) return {};
+    }
+    if (totals.long_rows >= most_units(n)) return {};
+    if (totals.binned_pairs > most_entries)
+        limits.refuse_count((totals.found_long_rows < SK_MOST_LONG_ROWS ? "" : "at least ") +
+                            std::to_string(totals.binned_pairs) + " pairs (triangle, cell)");
+    if (totals.binned_pairs > count.room.pairs && !fill_bins()) return {};
+    const auto has_space = [&] {
+        header.reference_count = static_cast<std::uint32_t>(totals.pairs);
+        count.cells = totals.cells;
+        count.longest_list = totals.longest_list;
+        return limits.fits(world + binned_bytes(device, header, count));
+    };
+    if (!has_space() && (!count_again(0) || !fill_bins() || !has_space())) return {};
+    count.reaches = {};
+    count.run_counts = {};
+    count.part_sums = {};
+    return count;
+}
+
+std::uint64_t started_bytes(const Device& device, std::uint32_t triangles, const BinnedCount& started) {
+    return started.room.blocks == 0 ? report_bytes : count_bytes(device, triangles, started.room);
+}
+
+std::uint64_t binned_bytes(const Device& device, const ::SetkaGridHeader& header, const BinnedCount& count) {
+    return kept_bytes(device, count.room) +
+           (block_count(header) * block_words + count.cells * cell_words + header.reference_count) * word;
+}
+
+CompactTables build_binned(Queue& queue, const ::SetkaGridHeader& header, BinnedCount count) {
+    CompactTables tables;
+    queue.impl().begin_stage("blocks");
+    tables.cells = queue.make_buffer<std::uint32_t>(count.cells * cell_words, "cells");
+    tables.blocks = queue.make_buffer<std::uint32_t>(block_count(header) * block_words, "blocks");
+    tables.references = queue.make_buffer<std::uint32_t>(header.reference_count, "references");
+    enqueue_block_starts(queue, count.block_sums, count.blocks);
+    queue.impl().begin_stage("lists");
+    launch_bins(queue, Kernel::bins_place, bin_count(header), count.room.items, header, count.starts, count.pair_cells,
+                count.pair_triangles, count.counters, count.blocks, count.marks, tables.blocks, tables.cells,
+                tables.references);
+    tables.longest_list = count.longest_list;
+    return tables;
+}
+
+}  // namespace setka

@@ -1,0 +1,354 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * How do lists come about without sorting and without atomics, where few work-items run at a time? Cells come in bins of 16 x 16 x 16. Each work-item
+ * takes a run of triangles and hands their pairs (cell, triangle) to the bins; a bin is one work-item's then, whose counters fit the
+ * nearest cache and are nobody else's. Runs follow each other in a bin, and triangles in a run, so that every list comes out in ascending
+ * order.
+ */
+#ifndef SETKA_DEVICE_GRID_BINS_H
+#define SETKA_DEVICE_GRID_BINS_H
+
+#include "device/grid/reach.h"
+#if SK_WIDTH > 1
+#include "device/grid/reach_lanes.h"
+#endif
+
+SK_FUNCTION sk_dims sk_bin_dims(sk_dims cells) {
+    sk_dims r;
+    r.x = (cells.x + SK_BIN_SIDE - 1u) / SK_BIN_SIDE;
+    r.y = (cells.y + SK_BIN_SIDE - 1u) / SK_BIN_SIDE;
+    r.z = (cells.z + SK_BIN_SIDE - 1u) / SK_BIN_SIDE;
+    return r;
+}
+
+#if SK_WIDTH == 1
+
+/** The reaches of triangles first to end - 1. */
+SK_FUNCTION void sk_find_reaches(sk_u32 first, sk_u32 end, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
+                                 SK_GLOBAL sk_reach* reaches) {
+    for (sk_u32 i = first; i < end; ++i) {
+        const sk_cell_points points = sk_load_cell_points(grid, triangles + (size_t)i * 9u);
+        reaches[i] = sk_reach_by_rule(grid, points, sk_reach_by_box(sk_box_of(grid, points)));
+    }
+}
+
+#endif
+
+/** Where a run's pairs go. `next` has a number for each bin: of the run's pairs in it so far, or of the place of its next one. */
+typedef struct sk_run_of_triangles {
+    SK_GLOBAL sk_u32* next;
+    SK_GLOBAL sk_u16* cells; /* of a pair, in its bin */
+    SK_GLOBAL sk_u32* triangles;
+    sk_dims bins;
+} sk_run_of_triangles;
+
+SK_FUNCTION sk_run_of_triangles sk_make_run(SK_GLOBAL sk_u32* next, SK_GLOBAL sk_u16* cells, SK_GLOBAL sk_u32* triangles,
+                                            SetkaGridHeader grid) {
+    sk_run_of_triangles r;
+    r.next = next;
+    r.cells = cells;
+    r.triangles = triangles;
+    r.bins = sk_bin_dims(sk_cell_dims(grid));
+    return r;
+}
+
+/** A cell's number in its bin: x + 16 y + 256 z. */
+SK_FUNCTION sk_u32 sk_cell_in_bin(sk_u32 x, sk_u32 y, sk_u32 z) {
+    return (x % SK_BIN_SIDE) + SK_BIN_SIDE * ((y % SK_BIN_SIDE) + SK_BIN_SIDE * (z % SK_BIN_SIDE));
+}
+
+/** Counts a pair, or puts it where it belongs. */
+SK_FUNCTION void sk_hand_over(sk_run_of_triangles run, sk_u32 x, sk_u32 y, sk_u32 z, sk_u32 triangle, const int put) {
+    SK_GLOBAL sk_u32* next = run.next + sk_number_at(run.bins, x / SK_BIN_SIDE, y / SK_BIN_SIDE, z / SK_BIN_SIDE);
+    const sk_u32 place = *next;
+    *next = place + 1u;
+    if (put) {
+        run.cells[place] = (sk_u16)sk_cell_in_bin(x, y, z);
+        run.triangles[place] = triangle;
+    }
+}
+
+/** Bits of a mask that are `cells` or more cells from the corner along an axis: its bits there repeated. */
+SK_FUNCTION sk_u64 sk_beyond_x(sk_u32 cells) { return (((sk_u64)0xf << cells & 0xfu) * 0x11111111u) * (((sk_u64)1 << 32) + 1u); }
+SK_FUNCTION sk_u64 sk_beyond_y(sk_u32 cells) { return (((sk_u64)0xffffu << 4u * cells & 0xffffu) * 0x10001u) * (((sk_u64)1 << 32) + 1u); }
+SK_FUNCTION sk_u64 sk_beyond_z(sk_u32 cells) { return ~(sk_u64)0 << 16u * cells; }
+
+/** The pairs of a triangle that has a mask. */
+SK_FUNCTION void sk_hand_over_mask(sk_run_of_triangles run, sk_reach reach, sk_u32 triangle, const int put) {
+    const sk_dims corner = sk_reach_corner(reach);
+    const sk_u64 mask = sk_reach_mask(reach);
+    const sk_u32 left_x = SK_BIN_SIDE - corner.x % SK_BIN_SIDE, left_y = SK_BIN_SIDE - corner.y % SK_BIN_SIDE,
+                 left_z = SK_BIN_SIDE - corner.z % SK_BIN_SIDE;
+    sk_u64 beyond = 0u;
+    if (left_x < 4u) beyond |= sk_beyond_x(left_x);
+    if (left_y < 4u) beyond |= sk_beyond_y(left_y);
+    if (left_z < 4u) beyond |= sk_beyond_z(left_z);
+    if ((mask & beyond) == 0u) {
+        SK_GLOBAL sk_u32* next =
+            run.next + sk_number_at(run.bins, corner.x / SK_BIN_SIDE, corner.y / SK_BIN_SIDE, corner.z / SK_BIN_SIDE);
+        sk_u32 place = *next;
+        if (put) {
+            const sk_u32 first = sk_cell_in_bin(corner.x, corner.y, corner.z);
+            for (sk_u64 rest = mask; rest != 0u; rest &= rest - 1u) {
+                const sk_u32 bit = sk_bit_count((rest & (~rest + 1u)) - 1u);
+                run.cells[place] = (sk_u16)(first + ((bit & 3u) | (bit & 12u) << 2 | (bit & 48u) << 4));
+                run.triangles[place] = triangle;
+                place += 1u;
+            }
+        } else {
+            place += sk_bit_count(mask);
+        }
+        *next = place;
+    } else {
+        for (sk_u64 rest = mask; rest != 0u; rest &= rest - 1u) {
+            const sk_u32 bit = sk_bit_count((rest & (~rest + 1u)) - 1u);
+            sk_hand_over(run, corner.x + (bit & 3u), corner.y + (bit >> 2 & 3u), corner.z + (bit >> 4), triangle, put);
+        }
+    }
+}
+
+/** The pairs of row j of a triangle that has none; how many these are. Cells of a column follow each other in one bin after the other. */
+SK_FUNCTION sk_u32 sk_hand_over_row(sk_run_of_triangles run, SetkaGridHeader grid, sk_cell_triangle t, sk_u32 j,
+                                    sk_u32 triangle, const int put) {
+    const sk_row row = sk_enter_row(grid, t, j);
+    const int along_z = t.slot_w.cell == 16u, along_x = t.slot_w.cell == 1u;
+    const sk_u32 stride = along_z ? SK_BIN_SIDE * SK_BIN_SIDE : along_x ? 1u : SK_BIN_SIDE;
+    sk_u32 count = 0u;
+    for (sk_u32 i = row.first; i <= row.last; ++i) {
+        const sk_column column = sk_enter_column(grid, t, row, i);
+        const sk_u32 end = column.first <= column.last ? column.last + 1u : column.first;
+        for (sk_u32 k = column.first; k < end;) {
+            const sk_u32 x = along_x ? k : i, y = along_z ? j : along_x ? i : k, z = along_z ? k : j;
+            const sk_u32 cells = sk_min_u32(end - k, SK_BIN_SIDE - k % SK_BIN_SIDE);
+            SK_GLOBAL sk_u32* next = run.next + sk_number_at(run.bins, x / SK_BIN_SIDE, y / SK_BIN_SIDE, z / SK_BIN_SIDE);
+            const sk_u32 place = *next, first = sk_cell_in_bin(x, y, z);
+            *next = place + cells;
+            if (put)
+                for (sk_u32 c = 0u; c < cells; ++c) {
+                    run.cells[place + c] = (sk_u16)(first + c * stride);
+                    run.triangles[place + c] = triangle;
+                }
+            k += cells;
+        }
+        count += end - column.first;
+    }
+    return count;
+}
+
+/**
+ * Adds up what the large triangles first to end - 1 have at least: as many cells as along their longest axes, in units of SK_LONG_ROW. Whether all
+ * known so far have too many.
+ */
+SK_FUNCTION int sk_have_too_many(sk_u32 first, sk_u32 end, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
+                                 SK_GLOBAL const sk_reach* reaches, sk_u32 most_units, SK_GLOBAL sk_u32* report) {
+    SK_GLOBAL sk_u32* total = report + SK_TOTAL_LONG;
+    sk_u64 units = 0u;
+    for (sk_u32 i = first; i < end; ++i)
+        if (sk_reach_kind(reaches[i]) == SK_REACH_LARGE)
+            units += sk_longest_side(sk_box_of(grid, sk_load_cell_points(grid, triangles + (size_t)i * 9u))) / SK_LONG_ROW;
+    /* To add 0 is to read what others may be adding to; at most twice as much is ever there. */
+    if (units != 0u && sk_atomic_add(total, 0u) < most_units)
+        (void)sk_atomic_add(total, units < most_units ? (sk_u32)units : most_units);
+    return sk_atomic_add(total, 0u) >= most_units;
+}
+
+/**
+ * Hands over the pairs of triangles first to end - 1. Those without a mask are counted until they are known to be more than any grid may have:
+ * it is refused then, so that what other work-items see of that changes nothing else.
+ */
+SK_FUNCTION void sk_hand_over_run(sk_run_of_triangles run, sk_u32 first, sk_u32 end, SetkaGridHeader grid,
+                                  SK_GLOBAL const float* triangles, SK_GLOBAL const sk_reach* reaches,
+                                  SK_GLOBAL sk_u32* report, const int put) {
+    for (sk_u32 i = first; i < end; ++i) {
+        const sk_reach reach = reaches[i];
+        if (sk_reach_kind(reach) == SK_REACH_MASK) {
+            sk_hand_over_mask(run, reach, i, put);
+        } else {
+            const sk_cell_triangle t = sk_load_cell_triangle(grid, triangles + (size_t)i * 9u);
+            const sk_u32 last = sk_last_row(grid, t);
+            for (sk_u32 j = sk_first_row(grid, t); j <= last; ++j)
+                if (put || *(volatile SK_GLOBAL sk_u32*)(report + SK_TOTAL_FOUND) < SK_MOST_LONG_ROWS) {
+                    const sk_u32 units = sk_hand_over_row(run, grid, t, j, i, put) / SK_LONG_ROW;
+                    if (!put && units != 0u) (void)sk_atomic_add(report + SK_TOTAL_FOUND, units);
+                }
+        }
+    }
+}
+
+/**
+ * Run r of `length` triangles: their reaches, and counts[r * bins + b], its pairs in bin b. Nothing where the grid has more bins than that, and
+ * no counts where large triangles are known to have too many cells: no bins are made then.
+ */
+SK_FUNCTION void sk_count_run(sk_u32 r, sk_u32 length, sk_u32 bins, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
+                              SK_GLOBAL sk_reach* reaches, SK_GLOBAL sk_u32* counts, sk_u32 most_units, SK_GLOBAL sk_u32* report) {
+    SK_GLOBAL sk_u32* own = counts + (size_t)r * bins;
+    const sk_u32 first = r * length, end = sk_min_u32(first + length, grid.triangle_count);
+    const sk_run_of_triangles run = sk_make_run(own, (SK_GLOBAL sk_u16*)0, (SK_GLOBAL sk_u32*)0, grid);
+    for (sk_u32 b = 0u; b < bins; ++b) own[b] = 0u;
+    if (sk_block_count(run.bins) <= bins) {
+        sk_find_reaches(first, end, grid, triangles, reaches);
+        if (!sk_have_too_many(first, end, grid, triangles, reaches, most_units, report))
+            sk_hand_over_run(run, first, end, grid, triangles, reaches, report, 0);
+    }
+}
+
+/** The same run's pairs go where `next` says, which is changed. */
+SK_FUNCTION void sk_fill_run(sk_u32 r, sk_u32 length, sk_u32 bins, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
+                             SK_GLOBAL const sk_reach* reaches, SK_GLOBAL sk_u32* next, SK_GLOBAL sk_u16* cells,
+                             SK_GLOBAL sk_u32* numbers, SK_GLOBAL sk_u32* report) {
+    const sk_u32 first = r * length, end = sk_min_u32(first + length, grid.triangle_count);
+    const sk_run_of_triangles run = sk_make_run(next + (size_t)r * bins, cells, numbers, grid);
+    if (sk_block_count(run.bins) <= bins) sk_hand_over_run(run, first, end, grid, triangles, reaches, report, 1);
+}
+
+/** A part of the bins, whose counts are made places by one work-item. */
+SK_FUNCTION sk_u32 sk_part_end(sk_u32 part, sk_u32 bins) { return sk_min_u32((part + 1u) * SK_BIN_PART, bins); }
+
+/** sums[part] = the pairs of its bins in all runs. */
+SK_FUNCTION void sk_sum_bins(sk_u32 part, sk_u32 bins, sk_u32 runs, SK_GLOBAL const sk_u32* counts,
+                             SK_GLOBAL sk_u64* sums) {
+    const sk_u32 end = sk_part_end(part, bins);
+    sk_u64 sum = 0u;
+    for (sk_u32 r = 0u; r < runs; ++r)
+        for (sk_u32 b = part * SK_BIN_PART; b < end; ++b) sum += counts[(size_t)r * bins + b];
+    sums[part] = sum;
+}
+
+/**
+ * The counts of a part's bins become places of their first pairs, starts[b] those of bins, starts[bins] and the report the number of all;
+ * the largest number where not all were counted.
+ */
+SK_FUNCTION void sk_start_bins(sk_u32 part, sk_u32 bins, sk_u32 runs, sk_u32 most_units, SK_GLOBAL const sk_u64* sums,
+                               SK_GLOBAL sk_u32* counts, SK_GLOBAL sk_u32* starts, SK_GLOBAL sk_u32* report) {
+    const sk_u32 end = sk_part_end(part, bins);
+    sk_u64 before = 0u;
+    sk_u32 place;
+    for (sk_u32 p = 0u; p < part; ++p) before += sums[p];
+    place = (sk_u32)before;
+    for (sk_u32 b = part * SK_BIN_PART; b < end; ++b) {
+        starts[b] = place;
+        for (sk_u32 r = 0u; r < runs; ++r) {
+            const sk_u32 count = counts[(size_t)r * bins + b];
+            counts[(size_t)r * bins + b] = place;
+            place += count;
+        }
+    }
+    if (end == bins) {
+        const sk_u64 all = report[SK_TOTAL_LONG] < most_units ? before + sums[part] : ~(sk_u64)0;
+        starts[bins] = place;
+        report[SK_TOTAL_BINNED_LOW] = (sk_u32)all;
+        report[SK_TOTAL_BINNED_HIGH] = (sk_u32)(all >> 32);
+    }
+}
+
+/** Whether all pairs were handed over. */
+SK_FUNCTION int sk_is_binned(SK_GLOBAL const sk_u32* report, sk_u32 capacity) {
+    return report[SK_TOTAL_BINNED_HIGH] == 0u && report[SK_TOTAL_BINNED_LOW] <= capacity;
+}
+
+/** Counts the pairs first to end - 1 of a bin in its cells. */
+SK_FUNCTION void sk_count_in_bin(sk_u32 first, sk_u32 end, SK_GLOBAL const sk_u16* cells, SK_GLOBAL sk_u32* counters) {
+    for (sk_u32 c = 0u; c < SK_BIN_CELLS; ++c) counters[c] = 0u;
+    for (sk_u32 p = first; p < end; ++p) counters[cells[p]] += 1u;
+}
+
+/** The first block of a bin, and how many along each axis are inside the grid. */
+typedef struct sk_bin_blocks {
+    sk_dims first, count;
+} sk_bin_blocks;
+
+SK_FUNCTION sk_bin_blocks sk_blocks_of_bin(sk_dims blocks, sk_dims bins, sk_u32 bin) {
+    sk_bin_blocks r;
+    r.first.x = bin % bins.x * SK_BIN_SIDE / 4u;
+    r.first.y = bin / bins.x % bins.y * SK_BIN_SIDE / 4u;
+    r.first.z = bin / bins.x / bins.y * SK_BIN_SIDE / 4u;
+    r.count.x = sk_min_u32(blocks.x - r.first.x, SK_BIN_SIDE / 4u);
+    r.count.y = sk_min_u32(blocks.y - r.first.y, SK_BIN_SIDE / 4u);
+    r.count.z = sk_min_u32(blocks.z - r.first.z, SK_BIN_SIDE / 4u);
+    return r;
+}
+
+/** What the counters of a block say, from that of its first cell on. */
+SK_FUNCTION sk_tally sk_tally_in_bin(SK_GLOBAL const sk_u32* counters) {
+    sk_tally r = sk_no_tally();
+    for (sk_u32 row = 0u; row < SK_BLOCK_CELLS / 4u; ++row)
+        r = sk_tally_row(r, row, *(SK_GLOBAL const sk_four_counts*)(counters + SK_BIN_SIDE * ((row & 3u) + SK_BIN_SIDE * (row >> 2))));
+    return r;
+}
+
+/** The records of a bin's blocks as sk_count_block() makes them; how long the longest list is. */
+SK_FUNCTION sk_u32 sk_count_bin(sk_u32 bin, sk_u32 first, sk_u32 end, SetkaGridHeader grid, SK_GLOBAL const sk_u16* cells,
+                                SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_block* counted, SK_GLOBAL sk_u32* marks) {
+    const sk_dims dims = sk_block_dims(sk_cell_dims(grid));
+    const sk_bin_blocks own = sk_blocks_of_bin(dims, sk_bin_dims(sk_cell_dims(grid)), bin);
+    sk_u32 longest = 0u;
+    if (first < end) sk_count_in_bin(first, end, cells, counters);
+    for (sk_u32 z = 0u; z < own.count.z; ++z)
+        for (sk_u32 y = 0u; y < own.count.y; ++y)
+            for (sk_u32 x = 0u; x < own.count.x; ++x) {
+                const sk_u32 b = sk_number_at(dims, own.first.x + x, own.first.y + y, own.first.z + z);
+                sk_tally tally = sk_no_tally();
+                if (first < end) tally = sk_tally_in_bin(counters + sk_cell_in_bin(4u * x, 4u * y, 4u * z));
+                if (tally.mask != 0u) sk_mark_block(dims, b, marks);
+                longest = sk_max_u32(longest, tally.longest);
+                counted[b] = sk_counted_block(tally);
+            }
+    return longest;
+}
+
+/**
+ * The same for bins first, first + step, … below n. Of `blocks` records, those that the grid has no block for are empty ones, or all
+ * if not all pairs are in bins or the grid has more blocks.
+ */
+SK_FUNCTION void sk_tally_bins(sk_u32 first, sk_u32 n, sk_u32 step, sk_u32 capacity, sk_u32 blocks, SetkaGridHeader grid,
+                               SK_GLOBAL const sk_u32* starts, SK_GLOBAL const sk_u16* cells, SK_GLOBAL sk_u32* counters,
+                               SK_GLOBAL sk_block* counted, SK_GLOBAL sk_u32* marks, SK_GLOBAL sk_u32* report) {
+    const sk_u32 blocks_of_grid = sk_block_count(sk_block_dims(sk_cell_dims(grid)));
+    const sk_u32 bins_of_grid = sk_block_count(sk_bin_dims(sk_cell_dims(grid)));
+    const int has_all = sk_is_binned(report, capacity) && blocks_of_grid <= blocks;
+    const sk_u32 bins = has_all ? sk_min_u32(bins_of_grid, n) : 0u, of_grid = has_all ? blocks_of_grid : 0u;
+    sk_u32 longest = 0u;
+    for (sk_u32 b = first; b < bins; b += step)
+        longest = sk_max_u32(longest, sk_count_bin(b, starts[b], starts[b + 1u], grid, cells, counters, counted, marks));
+    for (sk_u32 b = of_grid + first; b < blocks; b += step) counted[b] = sk_counted_block(sk_no_tally());
+    if (longest > SK_LONG_LIST) (void)sk_atomic_max(report + SK_TOTAL_LONGEST, longest);
+}
+
+/** The lists of a bin: records of blocks and cells, and references. */
+SK_FUNCTION void sk_place_bin(sk_u32 bin, sk_u32 first, sk_u32 end, SetkaGridHeader grid, SK_GLOBAL const sk_u16* cells,
+                              SK_GLOBAL const sk_u32* triangles, SK_GLOBAL sk_u32* counters,
+                              SK_GLOBAL const sk_block* counted, SK_GLOBAL const sk_u32* marks, SK_GLOBAL sk_block* blocks,
+                              SK_GLOBAL sk_cell_list* lists, SK_GLOBAL sk_u32* references) {
+    const sk_dims dims = sk_block_dims(sk_cell_dims(grid));
+    const sk_bin_blocks own = sk_blocks_of_bin(dims, sk_bin_dims(sk_cell_dims(grid)), bin);
+    if (first < end) sk_count_in_bin(first, end, cells, counters);
+    for (sk_u32 z = 0u; z < own.count.z; ++z)
+        for (sk_u32 y = 0u; y < own.count.y; ++y)
+            for (sk_u32 x = 0u; x < own.count.x; ++x) {
+                const sk_u32 b = sk_number_at(dims, own.first.x + x, own.first.y + y, own.first.z + z);
+                const sk_u32 corner = sk_cell_in_bin(4u * x, 4u * y, 4u * z);
+                sk_block block = counted[b];
+                sk_u32 r = block.first;
+                sk_cell_list list;
+                list.offset = block.clearance;
+                for (sk_u64 rest = sk_mask_of(block); rest != 0u; rest &= rest - 1u) {
+                    const sk_u32 bit = sk_bit_count((rest & (~rest + 1u)) - 1u);
+                    SK_GLOBAL sk_u32* counter = counters + (corner + ((bit & 3u) | (bit & 12u) << 2 | (bit & 48u) << 4));
+                    list.count = *counter;
+                    *counter = list.offset;
+                    lists[r] = list;
+                    list.offset += list.count;
+                    r += 1u;
+                }
+                block.clearance = sk_mask_of(block) != 0u ? 0u : sk_find_clearance(dims, b, marks);
+                blocks[b] = block;
+            }
+    for (sk_u32 p = first; p < end; ++p) {
+        SK_GLOBAL sk_u32* counter = counters + cells[p];
+        const sk_u32 place = *counter;
+        *counter = place + 1u;
+        references[place] = triangles[p];
+    }
+}
+
+#endif

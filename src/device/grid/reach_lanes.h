@@ -1,0 +1,348 @@
+/* SPDX-License-Identifier: MIT */
+/**
+ * Into which cells do SK_WIDTH triangles reach? The rule of cells.h for those that lie in four cells along each axis, a triangle in each
+ * lane, by the same operations in the same order. What depends on a row or on a column alone is found once; which cells an interval touches is
+ * found by comparing its ends with the planes between cells, which says the same as sk_cell() does.
+ */
+#ifndef SETKA_DEVICE_GRID_REACH_LANES_H
+#define SETKA_DEVICE_GRID_REACH_LANES_H
+
+#include "device/grid/reach.h"
+#include "device/lanes.h"
+
+/** Vertices in cell units. */
+typedef struct sk_points_lanes {
+    sk_vec3N p0, p1, p2;
+} sk_points_lanes;
+
+SK_FUNCTION sk_vec3N sk_to_cells_lanes(SetkaGridHeader grid, sk_fN x, sk_fN y, sk_fN z) {
+    return sk_make3_f((x - grid.origin[0]) * grid.inverse_cell_size, (y - grid.origin[1]) * grid.inverse_cell_size,
+                      (z - grid.origin[2]) * grid.inverse_cell_size);
+}
+
+SK_FUNCTION sk_points_lanes sk_gather_cell_points(SetkaGridHeader grid, SK_GLOBAL const float* triangles,
+                                                  sk_iN numbers) {
+    const sk_columns a = sk_gather4(triangles, numbers, 9u), b = sk_gather4(triangles + 4, numbers, 9u);
+    const sk_fN last = sk_gather_f(triangles + 8, numbers, 9u);
+    sk_points_lanes r;
+    r.p0 = sk_to_cells_lanes(grid, a.a, a.b, a.c);
+    r.p1 = sk_to_cells_lanes(grid, a.d, b.a, b.b);
+    r.p2 = sk_to_cells_lanes(grid, b.c, b.d, last);
+    return r;
+}
+
+/** sk_cell() */
+SK_FUNCTION sk_iN sk_cells_at(sk_fN f, sk_u32 dim) {
+    const sk_fN inside = sk_select_f((f > 0.0f) & (f < (float)dim), f, sk_same_f(0.0f));
+    return sk_select_i(f >= (float)dim, sk_same_i((sk_i32)dim - 1), sk_lanes_to_int(inside));
+}
+
+/** One axis of sk_box_of(): the first cell, how many there are, and whether rounding decides about neither end. */
+typedef struct sk_extent_lanes {
+    sk_iN first, count, is_clear;
+} sk_extent_lanes;
+
+SK_FUNCTION sk_extent_lanes sk_extent_along(sk_fN a, sk_fN b, sk_fN c, float around, sk_u32 dim) {
+    const sk_fN low = sk_min_f(sk_min_f(a, b), c), high = sk_max_f(sk_max_f(a, b), c);
+    const sk_iN last = sk_cells_at(high + around, dim);
+    sk_extent_lanes r;
+    r.first = sk_cells_at(low - around, dim);
+    r.count = last - r.first + 1;
+    r.is_clear = (sk_cells_at(low, dim) == r.first) & (sk_cells_at(high, dim) == last);
+    return r;
+}
+
+/** What the boxes say (sk_reach_by_box()); of a mask the cells along x, y and z. */
+typedef struct sk_boxes_lanes {
+    sk_u32 kind[SK_WIDTH];
+    sk_u32 x[SK_WIDTH], y[SK_WIDTH], z[SK_WIDTH];
+    sk_u32 nx[SK_WIDTH], ny[SK_WIDTH], nz[SK_WIDTH];
+} sk_boxes_lanes;
+
+SK_FUNCTION void sk_store_lanes(sk_iN v, sk_u32* target) { sk_store_i(v, (sk_i32*)target); }
+
+SK_FUNCTION sk_boxes_lanes sk_boxes_of(SetkaGridHeader grid, sk_points_lanes points) {
+    const float around = grid.tolerance + grid.tolerance;
+    const sk_extent_lanes x = sk_extent_along(points.p0.x, points.p1.x, points.p2.x, around, grid.dims[0]);
+    const sk_extent_lanes y = sk_extent_along(points.p0.y, points.p1.y, points.p2.y, around, grid.dims[1]);
+    const sk_extent_lanes z = sk_extent_along(points.p0.z, points.p1.z, points.p2.z, around, grid.dims[2]);
+    const sk_iN most = sk_max_i(sk_max_i(x.count, y.count), z.count);
+    const sk_iN single = (x.count == 1) + (y.count == 1) + (z.count == 1); /* each true one is -1 */
+    const sk_iN is_run = (single <= -2) & (most <= 4) & x.is_clear & y.is_clear & z.is_clear;
+    sk_iN kind = sk_select_i(most <= (sk_i32)SK_SMALL_BOX, sk_same_i(SK_REACH_ROWS), sk_same_i(SK_REACH_LARGE));
+    sk_boxes_lanes r;
+    kind = sk_select_i(most <= 4, sk_same_i(SK_REACH_FOUR), kind);
+    kind = sk_select_i(most <= 2, sk_same_i(SK_REACH_PAIR), kind);
+    sk_store_lanes(sk_select_i(is_run, sk_same_i(SK_REACH_MASK), kind), r.kind);
+    sk_store_lanes(x.first, r.x);
+    sk_store_lanes(y.first, r.y);
+    sk_store_lanes(z.first, r.z);
+    sk_store_lanes(x.count, r.nx);
+    sk_store_lanes(y.count, r.ny);
+    sk_store_lanes(z.count, r.nz);
+    return r;
+}
+
+/** An edge, its ends in ascending order of p. */
+typedef struct sk_edge_lanes {
+    sk_fN p_low, p_high, q_low, q_high, slope;
+} sk_edge_lanes;
+
+typedef struct sk_edges_lanes {
+    sk_edge_lanes a, b, c;
+} sk_edges_lanes;
+
+SK_FUNCTION sk_edge_lanes sk_order_edge(sk_fN pa, sk_fN qa, sk_fN pb, sk_fN qb) {
+    const sk_iN swap = pb < pa;
+    sk_edge_lanes r;
+    r.p_low = sk_select_f(swap, pb, pa);
+    r.p_high = sk_select_f(swap, pa, pb);
+    r.q_low = sk_select_f(swap, qb, qa);
+    r.q_high = sk_select_f(swap, qa, qb);
+    r.slope = (qb - qa) / (pb - pa);
+    return r;
+}
+
+SK_FUNCTION sk_edges_lanes sk_order_edges(sk_vec3N p, sk_vec3N q) {
+    sk_edges_lanes r;
+    r.a = sk_order_edge(p.x, q.x, p.y, q.y);
+    r.b = sk_order_edge(p.y, q.y, p.z, q.z);
+    r.c = sk_order_edge(p.z, q.z, p.x, q.x);
+    return r;
+}
+
+typedef struct sk_interval_lanes {
+    sk_fN low, high;
+} sk_interval_lanes;
+
+SK_FUNCTION sk_interval_lanes sk_clip_edge_lanes(sk_interval_lanes interval, sk_edge_lanes edge, sk_fN start,
+                                                 sk_fN end) {
+    const sk_fN first =
+        sk_select_f(edge.p_low >= start, edge.q_low, edge.q_low + (start - edge.p_low) * edge.slope);
+    const sk_fN second = sk_select_f(edge.p_high <= end, edge.q_high, edge.q_low + (end - edge.p_low) * edge.slope);
+    const sk_iN meets = (edge.p_high >= start) & (edge.p_low <= end);
+    const sk_fN low = sk_min_f(first, second), high = sk_max_f(first, second);
+    sk_interval_lanes r;
+    r.low = sk_select_f(meets & (low < interval.low), low, interval.low);
+    r.high = sk_select_f(meets & (high > interval.high), high, interval.high);
+    return r;
+}
+
+/** sk_clip_triangle() */
+SK_FUNCTION sk_interval_lanes sk_clip_lanes(sk_edges_lanes edges, sk_fN start, sk_fN end) {
+    sk_interval_lanes r;
+    r.low = sk_same_f(SK_EVERYTHING);
+    r.high = sk_same_f(-SK_EVERYTHING);
+    r = sk_clip_edge_lanes(r, edges.a, start, end);
+    r = sk_clip_edge_lanes(r, edges.b, start, end);
+    return sk_clip_edge_lanes(r, edges.c, start, end);
+}
+
+/** Cells along an axis from the box's first one on. An end f of an interval is in cell k or a lower one where f < below, in k or a higher one where f >= from. */
+typedef struct sk_planes_lanes {
+    sk_fN at[4], from[4], below[4];
+} sk_planes_lanes;
+
+SK_FUNCTION sk_planes_lanes sk_planes_of(sk_iN first, sk_iN dim, const int cells) {
+    const sk_fN infinity = sk_same_f(sk_bits_float(0x7f800000u));
+    sk_planes_lanes r;
+    for (int k = 0; k < cells; ++k) {
+        const sk_iN cell = first + k;
+        r.at[k] = sk_lanes_to_float(cell);
+        r.from[k] = sk_select_f(cell >= dim, infinity, sk_select_f(cell == 0, -infinity, r.at[k]));
+        r.below[k] = sk_select_f(cell + 1 >= dim, infinity, sk_lanes_to_float(cell + 1));
+    }
+    return r;
+}
+
+/** Bits w + 4 u + 16 v of the cells at the corner, and which axis w is: 0, 1 or 2. */
+typedef struct sk_rule_lanes {
+    sk_u32 low[SK_WIDTH], high[SK_WIDTH], axis[SK_WIDTH];
+} sk_rule_lanes;
+
+SK_FUNCTION sk_vec3N sk_choose3(sk_iN first, sk_vec3N a, sk_vec3N b) {
+    return sk_make3_f(sk_select_f(first, a.x, b.x), sk_select_f(first, a.y, b.y), sk_select_f(first, a.z, b.z));
+}
+
+SK_FUNCTION sk_fN sk_largest_lanes(sk_vec3N a) {
+    return sk_max_f(sk_max_f(sk_abs_f(a.x), sk_abs_f(a.y)), sk_abs_f(a.z));
+}
+
+/** The rule for triangles whose boxes are no more than `cells` wide, 2 or 4, from the corners on. */
+SK_FUNCTION sk_rule_lanes sk_rule_of(SetkaGridHeader grid, sk_points_lanes points, sk_iN corner_x, sk_iN corner_y,
+                                     sk_iN corner_z, const int cells) {
+    const float tolerance = grid.tolerance;
+    const sk_vec3N p0 = points.p0, p1 = points.p1, p2 = points.p2;
+    const sk_vec3N e1 = sk_make3_f(p1.x - p0.x, p1.y - p0.y, p1.z - p0.z);
+    const sk_vec3N e2 = sk_make3_f(p2.x - p0.x, p2.y - p0.y, p2.z - p0.z);
+    const sk_vec3N n = sk_make3_f(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x);
+    const sk_fN nx = sk_abs_f(n.x), ny = sk_abs_f(n.y), nz = sk_abs_f(n.z);
+    const sk_iN along_z = (nz >= nx) & (nz >= ny), along_y = ~along_z & (ny >= nx), along_x = ~along_z & ~along_y;
+    const sk_vec3N x = sk_make3_f(p0.x, p1.x, p2.x), y = sk_make3_f(p0.y, p1.y, p2.y), z = sk_make3_f(p0.z, p1.z, p2.z);
+    const sk_vec3N u = sk_choose3(along_x, y, x), v = sk_choose3(along_z, y, z);
+    const sk_vec3N w = sk_choose3(along_z, z, sk_choose3(along_y, y, x));
+    const sk_iN dim_x = sk_same_i((sk_i32)grid.dims[0]), dim_y = sk_same_i((sk_i32)grid.dims[1]), dim_z = sk_same_i((sk_i32)grid.dims[2]);
+    const sk_planes_lanes us =
+        sk_planes_of(sk_select_i(along_x, corner_y, corner_x), sk_select_i(along_x, dim_y, dim_x), cells);
+    const sk_planes_lanes vs =
+        sk_planes_of(sk_select_i(along_z, corner_y, corner_z), sk_select_i(along_z, dim_y, dim_z), cells);
+    const sk_planes_lanes ws =
+        sk_planes_of(sk_select_i(along_z, corner_z, sk_select_i(along_y, corner_y, corner_x)),
+                     sk_select_i(along_z, dim_z, sk_select_i(along_y, dim_y, dim_x)), cells);
+    const sk_fN nu = sk_select_f(along_x, n.y, n.x), nv = sk_select_f(along_z, n.y, n.z);
+    const sk_fN nw = sk_select_f(along_z, n.z, sk_select_f(along_y, n.y, n.x));
+    const sk_iN has_plane = sk_abs_f(nw) > 1e-30f;
+    const sk_fN divisor = sk_select_f(has_plane, nw, sk_same_f(1.0f));
+    const sk_fN size1 = sk_largest_lanes(e1), size2 = sk_largest_lanes(e2);
+    const sk_fN error = (((size1 * size2) / sk_abs_f(divisor)) * 0x1p-18f) * (sk_max_f(size1, size2) + 2.0f);
+    const sk_fN slope_u = sk_select_f(has_plane, -nu / divisor, sk_same_f(0.0f));
+    const sk_fN slope_v = sk_select_f(has_plane, -nv / divisor, sk_same_f(0.0f));
+    const sk_fN half_slab =
+        sk_select_f(has_plane, (0.5f + tolerance) * (sk_abs_f(slope_u) + sk_abs_f(slope_v)) + error,
+                    sk_same_f(SK_EVERYTHING));
+    const sk_edges_lanes u_over_v = sk_order_edges(v, u), w_over_v = sk_order_edges(v, w), w_over_u = sk_order_edges(u, w);
+    const sk_fN v_low = sk_min_f(sk_min_f(v.x, v.y), v.z) - tolerance, v_high = sk_max_f(sk_max_f(v.x, v.y), v.z) + tolerance;
+    sk_interval_lanes columns[4];
+    sk_fN middles[4];
+    sk_iN words[2];
+    sk_rule_lanes r;
+    words[0] = sk_same_i(0);
+    words[1] = sk_same_i(0);
+    for (int i = 0; i < cells; ++i) {
+        columns[i] = sk_clip_lanes(w_over_u, us.at[i] - tolerance, (us.at[i] + 1.0f) + tolerance);
+        middles[i] = w.x + ((us.at[i] + 0.5f) - u.x) * slope_u;
+    }
+    for (int j = 0; j < cells; ++j) {
+        const sk_fN start = vs.at[j] - tolerance, end = (vs.at[j] + 1.0f) + tolerance;
+        const sk_interval_lanes row_u = sk_clip_lanes(u_over_v, start, end), row_w = sk_clip_lanes(w_over_v, start, end);
+        const sk_fN row_middle = ((vs.at[j] + 0.5f) - v.x) * slope_v;
+        const sk_fN u_low = row_u.low - tolerance, u_high = row_u.high + tolerance;
+        const sk_iN is_row = (v_low < vs.below[j]) & (v_high >= vs.from[j]) & (row_u.low <= row_u.high) &
+                             (row_w.low <= row_w.high);
+        for (int i = 0; i < cells; ++i) {
+            const sk_interval_lanes own = columns[i];
+            const sk_fN middle = middles[i] + row_middle;
+            const sk_fN low = sk_max_f(sk_max_f(row_w.low, own.low), middle - half_slab) - tolerance;
+            const sk_fN high = sk_min_f(sk_min_f(row_w.high, own.high), middle + half_slab) + tolerance;
+            const sk_iN meets = is_row & (u_low < us.below[i]) & (u_high >= us.from[i]) & (own.low <= own.high) & (low <= high);
+            sk_iN bits = sk_same_i(0);
+            for (int k = 0; k < cells; ++k)
+                bits |= (low < ws.below[k]) & (high >= ws.from[k]) & sk_same_i(1 << (4 * i + 16 * (j & 1) + k));
+            words[j >> 1] |= bits & meets;
+        }
+    }
+    sk_store_lanes(words[0], r.low);
+    sk_store_lanes(words[1], r.high);
+    sk_store_lanes((along_y & 1) | (along_z & 2), r.axis);
+    return r;
+}
+
+/** Bits w + 4 u + 16 v as bits x + 4 y + 16 z, where w is an axis and u and v are the two others in ascending order. */
+SK_FUNCTION sk_u64 sk_turn_mask(sk_u64 mask, sk_u32 axis) {
+    sk_u64 m = mask, t;
+    if (axis != 0u) { /* w and u change places */
+        t = (m ^ m >> 3) & ((sk_u64)0x0a0a0a0au << 32 | 0x0a0a0a0au);
+        m ^= t ^ t << 3;
+        t = (m ^ m >> 6) & ((sk_u64)0x00cc00ccu << 32 | 0x00cc00ccu);
+        m ^= t ^ t << 6;
+    }
+    if (axis == 2u) { /* then w and v */
+        t = (m ^ m >> 12) & ((sk_u64)0x0000f0f0u << 32 | 0x0000f0f0u);
+        m ^= t ^ t << 12;
+        t = (m ^ m >> 24) & (sk_u64)0xff00ff00u;
+        m ^= t ^ t << 24;
+    }
+    return m;
+}
+
+/** Triangles that wait until there are as many as lanes, with the corners of their boxes. */
+typedef struct sk_waiting {
+    sk_u32 count;
+    sk_u32 triangles[SK_WIDTH], x[SK_WIDTH], y[SK_WIDTH], z[SK_WIDTH];
+} sk_waiting;
+
+/** Finds the reaches of those that wait, by the rule. */
+SK_FUNCTION void sk_reach_waiting(sk_waiting* waiting, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
+                                  SK_GLOBAL sk_reach* reaches, const int cells) {
+#define SK_NUMBER(k) (sk_i32) waiting->triangles[k]
+#define SK_X(k) (sk_i32) waiting->x[k]
+#define SK_Y(k) (sk_i32) waiting->y[k]
+#define SK_Z(k) (sk_i32) waiting->z[k]
+    const sk_rule_lanes rule = sk_rule_of(grid, sk_gather_cell_points(grid, triangles, SK_INTS(SK_NUMBER)), SK_INTS(SK_X),
+                                          SK_INTS(SK_Y), SK_INTS(SK_Z), cells);
+#undef SK_NUMBER
+#undef SK_X
+#undef SK_Y
+#undef SK_Z
+    for (sk_u32 k = 0u; k < waiting->count; ++k) {
+        sk_dims corner;
+        corner.x = waiting->x[k];
+        corner.y = waiting->y[k];
+        corner.z = waiting->z[k];
+        reaches[waiting->triangles[k]] = sk_make_reach(
+            corner, SK_REACH_MASK, sk_turn_mask((sk_u64)rule.low[k] | (sk_u64)rule.high[k] << 32, rule.axis[k]));
+    }
+    waiting->count = 0u;
+}
+
+/** Lets a triangle wait, and finds the reaches of all that do if they are enough. */
+SK_FUNCTION void sk_let_wait(sk_waiting* waiting, sk_u32 triangle, const sk_boxes_lanes* boxes, sk_u32 lane,
+                             SetkaGridHeader grid, SK_GLOBAL const float* triangles, SK_GLOBAL sk_reach* reaches,
+                             const int cells) {
+    const sk_u32 k = waiting->count;
+    waiting->triangles[k] = triangle;
+    waiting->x[k] = boxes->x[lane];
+    waiting->y[k] = boxes->y[lane];
+    waiting->z[k] = boxes->z[lane];
+    waiting->count = k + 1u;
+    if (k + 1u == SK_WIDTH) sk_reach_waiting(waiting, grid, triangles, reaches, cells);
+}
+
+/** Finds the reaches of those that are left. Lanes that stay empty have a triangle that is there. */
+SK_FUNCTION void sk_reach_rest(sk_waiting* waiting, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
+                               SK_GLOBAL sk_reach* reaches, const int cells) {
+    if (waiting->count == 0u) return;
+    for (sk_u32 k = waiting->count; k < SK_WIDTH; ++k) {
+        waiting->triangles[k] = waiting->triangles[0];
+        waiting->x[k] = waiting->x[0];
+        waiting->y[k] = waiting->y[0];
+        waiting->z[k] = waiting->z[0];
+    }
+    sk_reach_waiting(waiting, grid, triangles, reaches, cells);
+}
+
+/** The reaches of triangles first to end - 1. */
+SK_FUNCTION void sk_find_reaches(sk_u32 first, sk_u32 end, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
+                                 SK_GLOBAL sk_reach* reaches) {
+    sk_waiting pairs, fours;
+    pairs.count = 0u;
+    fours.count = 0u;
+    for (sk_u32 start = first; start < end; start += SK_WIDTH) {
+        const sk_u32 count = sk_min_u32(end - start, SK_WIDTH);
+#define SK_NEXT(k) (sk_i32)(start + ((k) < count ? (k) : 0u))
+        const sk_boxes_lanes boxes = sk_boxes_of(grid, sk_gather_cell_points(grid, triangles, SK_INTS(SK_NEXT)));
+#undef SK_NEXT
+        for (sk_u32 k = 0u; k < count; ++k) {
+            const sk_u32 kind = boxes.kind[k];
+            if (kind == SK_REACH_PAIR) {
+                sk_let_wait(&pairs, start + k, &boxes, k, grid, triangles, reaches, 2);
+            } else if (kind == SK_REACH_FOUR) {
+                sk_let_wait(&fours, start + k, &boxes, k, grid, triangles, reaches, 4);
+            } else {
+                sk_dims corner;
+                corner.x = boxes.x[k];
+                corner.y = boxes.y[k];
+                corner.z = boxes.z[k];
+                reaches[start + k] = sk_make_reach(
+                    corner, kind,
+                    kind == SK_REACH_MASK
+                        ? sk_run(1u, boxes.nx[k]) | sk_run(4u, boxes.ny[k]) | sk_run(16u, boxes.nz[k])
+                        : 0u);
+            }
+        }
+    }
+    sk_reach_rest(&pairs, grid, triangles, reaches, 2);
+    sk_reach_rest(&fours, grid, triangles, reaches, 4);
+}
+
+#endif
