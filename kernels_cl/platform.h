@@ -89,6 +89,8 @@ typedef int8 sk_iN;
 #define sk_lanes_as_float(i) as_float8(i)
 #endif
 #define sk_load_f4(p) vload4(0, p)
+#define sk_store_f4(v, p) vstore4(v, 0, p)
+#define sk_same_f4(a) ((float4)(a))
 /* Compilers of OpenCL C are made of Clang, which has subscripts and shuffles of vectors. */
 #define sk_lane(v, k) ((v)[k])
 #define sk_shuffle __builtin_shufflevector

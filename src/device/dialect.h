@@ -30,7 +30,9 @@
  * included, `mask ? a : b` with a mask of all bits or none, and:
  *   sk_fN sk_iN sk_f4        SK_WIDTH floats, as many sk_i32, 4 floats
  *   sk_make_f(a, …) sk_make_i(a, …) sk_lane(v, k)                k is a constant
- *   sk_load_f4(p) sk_store_f(v, p) sk_store_i(v, p)              aligned as one number is; stores to private memory
+ *   sk_load_f4(p) sk_store_f4(v, p)                              global memory, aligned as one number is
+ *   sk_store_f(v, p) sk_store_i(v, p)                            the same to private memory
+ *   sk_same_f4(a)                                                four times a
  *   sk_lanes_to_float(i) sk_lanes_to_int(f)                      conversions; f in the range of sk_i32
  *   sk_lanes_as_int(f) sk_lanes_as_float(i)                      bit casts
  *   sk_lanes_or(i)                                               of all lanes

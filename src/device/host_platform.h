@@ -67,6 +67,8 @@ static inline sk_f4 sk_load_f4(const float* p) {
     std::memcpy(&r, p, sizeof r);
     return r;
 }
+static inline void sk_store_f4(sk_f4 v, float* p) { std::memcpy(p, &v, sizeof v); }
+static inline sk_f4 sk_same_f4(float a) { return sk_f4{a, a, a, a}; }
 static inline void sk_store_f(sk_fN v, float* p) { std::memcpy(p, &v, sizeof v); }
 static inline void sk_store_i(sk_iN v, sk_i32* p) { std::memcpy(p, &v, sizeof v); }
 #define sk_lanes_to_float(i) __builtin_convertvector(i, sk_fN)

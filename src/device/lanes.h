@@ -89,20 +89,8 @@ typedef struct sk_columns {
 #define SK_EACH_FOUR(f) f(0), f(4)
 #endif
 
-/** Four numbers from base[at * stride] on of each lane: a load of four for each, then transpositions of four by four. */
-SK_FUNCTION sk_columns sk_gather4(SK_GLOBAL const float* base, sk_iN at, sk_u32 stride) {
-#define SK_ROW(k) sk_load_f4(base + (size_t)(sk_u32)sk_lane(at, k) * stride)
-#define SK_TWO_ROWS(k) sk_shuffle(SK_ROW(k), SK_ROW((k) + 4), 0, 1, 2, 3, 4, 5, 6, 7)
-#if SK_WIDTH == 16u
-#define SK_ROWS(k) \
-    sk_shuffle(SK_TWO_ROWS(k), SK_TWO_ROWS((k) + 8), 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
-#else
-#define SK_ROWS(k) SK_TWO_ROWS(k)
-#endif
-    const sk_fN s0 = SK_ROWS(0), s1 = SK_ROWS(1), s2 = SK_ROWS(2), s3 = SK_ROWS(3);
-#undef SK_ROWS
-#undef SK_TWO_ROWS
-#undef SK_ROW
+/** Rows k, k + 4, … of four numbers each, for k = 0 to 3, as columns: transpositions of four by four. */
+SK_FUNCTION sk_columns sk_turn_rows(sk_fN s0, sk_fN s1, sk_fN s2, sk_fN s3) {
     const sk_fN low01 = sk_shuffle(s0, s1, SK_EACH_FOUR(SK_LOW_EACH)), high01 = sk_shuffle(s0, s1, SK_EACH_FOUR(SK_HIGH_EACH));
     const sk_fN low23 = sk_shuffle(s2, s3, SK_EACH_FOUR(SK_LOW_EACH)), high23 = sk_shuffle(s2, s3, SK_EACH_FOUR(SK_HIGH_EACH));
     sk_columns r;
@@ -111,6 +99,33 @@ SK_FUNCTION sk_columns sk_gather4(SK_GLOBAL const float* base, sk_iN at, sk_u32 
     r.c = sk_shuffle(high01, high23, SK_EACH_FOUR(SK_LOW_TWO));
     r.d = sk_shuffle(high01, high23, SK_EACH_FOUR(SK_HIGH_TWO));
     return r;
+}
+
+#define SK_TWO_ROWS(row, k) sk_shuffle(row(k), row((k) + 4), 0, 1, 2, 3, 4, 5, 6, 7)
+#if SK_WIDTH == 16u
+#define SK_ROWS(row, k) \
+    sk_shuffle(SK_TWO_ROWS(row, k), SK_TWO_ROWS(row, (k) + 8), 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15)
+#else
+#define SK_ROWS(row, k) SK_TWO_ROWS(row, k)
+#endif
+
+/** Four numbers from base[at * stride] on of each lane. */
+SK_FUNCTION sk_columns sk_gather4(SK_GLOBAL const float* base, sk_iN at, sk_u32 stride) {
+#define SK_ROW(k) sk_load_f4(base + (size_t)(sk_u32)sk_lane(at, k) * stride)
+    return sk_turn_rows(SK_ROWS(SK_ROW, 0), SK_ROWS(SK_ROW, 1), SK_ROWS(SK_ROW, 2), SK_ROWS(SK_ROW, 3));
+#undef SK_ROW
+}
+
+/** The same from base[k * stride] on of lane k. */
+SK_FUNCTION sk_columns sk_load_columns(SK_GLOBAL const float* base, const sk_u32 stride) {
+#define SK_ROW(k) sk_load_f4(base + (k) * stride)
+    return sk_turn_rows(SK_ROWS(SK_ROW, 0), SK_ROWS(SK_ROW, 1), SK_ROWS(SK_ROW, 2), SK_ROWS(SK_ROW, 3));
+#undef SK_ROW
+}
+SK_FUNCTION sk_fN sk_load_column(SK_GLOBAL const float* base, const sk_u32 stride) {
+#define SK_AT(k) base[(k) * stride]
+    return SK_FLOATS(SK_AT);
+#undef SK_AT
 }
 
 #endif

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <limits>
+#include <map>
 #include <vector>
 
 #include "unit/reach_triangles.hpp"
@@ -21,7 +22,8 @@ using reach_support::triangle_in;
 
 sk_reach alone(const SetkaGridHeader& grid, const float* triangle) {
     const sk_cell_points points = sk_load_cell_points(grid, triangle);
-    return sk_reach_by_rule(grid, points, sk_reach_by_box(sk_box_of(grid, points)));
+    const sk_box box = sk_box_of(grid, points);
+    return sk_reach_in_bin(sk_reach_by_rule(grid, points, sk_reach_by_box(box)), box, sk_bin_dims(sk_cell_dims(grid)));
 }
 
 bool is_finite(const float* triangle) {
@@ -29,7 +31,13 @@ bool is_finite(const float* triangle) {
 }
 
 bool is_inside(const SetkaGridHeader& grid, sk_reach reach) {
-    const sk_dims corner = sk_reach_corner(reach);
+    sk_dims corner = sk_reach_corner(reach);
+    if (sk_reach_kind(reach) == SK_REACH_IN_BIN) {
+        const sk_dims bins = sk_bin_dims(sk_cell_dims(grid));
+        corner.x = reach.corner_xy % bins.x * SK_BIN_SIDE + (reach.corner_z & 15u);
+        corner.y = reach.corner_xy / bins.x % bins.y * SK_BIN_SIDE + (reach.corner_z >> 4 & 15u);
+        corner.z = reach.corner_xy / bins.x / bins.y * SK_BIN_SIDE + (reach.corner_z >> 8 & 15u);
+    }
     for (sk_u32 bit = 0; bit < 64; ++bit)
         if ((sk_reach_mask(reach) >> bit & 1u) != 0u &&
             !(corner.x + bit % 4 < grid.dims[0] && corner.y + bit / 4 % 4 < grid.dims[1] && corner.z + bit / 16 < grid.dims[2]))
@@ -39,7 +47,7 @@ bool is_inside(const SetkaGridHeader& grid, sk_reach reach) {
 
 TEST(ReachLanes, AreTheSameAsAlone) {
     constexpr sk_u32 guard = 0xdeadbeefu;
-    std::array<sk_u32, 3> kinds{};
+    std::map<sk_u32, sk_u32> kinds;
     sk_u32 not_numbers = 0;
     for (const auto& dims : {std::array{64u, 48u, 80u}, std::array{4096u, 4096u, 4096u}, std::array{2048u, 3u, 1u},
                              std::array{1u, 1u, 1u}, std::array{5u, 4096u, 2u}}) {
@@ -58,7 +66,8 @@ TEST(ReachLanes, AreTheSameAsAlone) {
                 triangles.insert(triangles.end(), triangle.begin(), triangle.end());
             }
             std::vector<sk_reach> reaches(first + count + 1, sk_reach{guard, guard, guard, guard});
-            sk_find_reaches(first, first + count, grid, triangles.data(), reaches.data());
+            const sk_u64 units = sk_find_reaches(first, first + count, grid, triangles.data(), reaches.data());
+            sk_u64 expected_units = 0;
             for (sk_u32 i = 0; i <= first + count; ++i) {
                 const sk_reach actual = reaches[i];
                 if (i < first || i == first + count) {
@@ -68,6 +77,8 @@ TEST(ReachLanes, AreTheSameAsAlone) {
                 const sk_reach expected = alone(grid, &triangles[9 * std::size_t(i)]);
                 ASSERT_EQ(sk_reach_kind(actual), sk_reach_kind(expected));
                 ++kinds[sk_reach_kind(expected)];
+                if (sk_reach_kind(expected) == SK_REACH_LARGE)
+                    expected_units += sk_longest_side(sk_box_of(grid, sk_load_cell_points(grid, &triangles[9 * std::size_t(i)]))) / SK_LONG_ROW;
                 ASSERT_EQ(actual.corner_xy, expected.corner_xy);
                 ASSERT_EQ(actual.corner_z, expected.corner_z);
                 // A scene with something that is no number is refused when it is counted; until then no kernel may leave the grid.
@@ -76,9 +87,10 @@ TEST(ReachLanes, AreTheSameAsAlone) {
                 else
                     ASSERT_TRUE(is_inside(grid, actual)) << "triangle " << i << " of run " << batch;
             }
+            ASSERT_EQ(units, expected_units);
         }
     }
-    for (const sk_u32 kind : kinds) EXPECT_GT(kind, 10000u);
+    for (const sk_u32 kind : {SK_REACH_MASK, SK_REACH_IN_BIN, SK_REACH_ROWS, SK_REACH_LARGE}) EXPECT_GT(kinds[kind], 10000u);
     EXPECT_GT(not_numbers, 1000u);
 }
 

@@ -13,23 +13,21 @@
 #include "device/grid/reach_lanes.h"
 #endif
 
-SK_FUNCTION sk_dims sk_bin_dims(sk_dims cells) {
-    sk_dims r;
-    r.x = (cells.x + SK_BIN_SIDE - 1u) / SK_BIN_SIDE;
-    r.y = (cells.y + SK_BIN_SIDE - 1u) / SK_BIN_SIDE;
-    r.z = (cells.z + SK_BIN_SIDE - 1u) / SK_BIN_SIDE;
-    return r;
-}
-
 #if SK_WIDTH == 1
 
-/** The reaches of triangles first to end - 1. */
-SK_FUNCTION void sk_find_reaches(sk_u32 first, sk_u32 end, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
-                                 SK_GLOBAL sk_reach* reaches) {
+/** The reaches of triangles first to end - 1, and in how many cells large ones are at least, in units of SK_LONG_ROW. */
+SK_FUNCTION sk_u64 sk_find_reaches(sk_u32 first, sk_u32 end, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
+                                   SK_GLOBAL sk_reach* reaches) {
+    const sk_dims bins = sk_bin_dims(sk_cell_dims(grid));
+    sk_u64 units = 0u;
     for (sk_u32 i = first; i < end; ++i) {
         const sk_cell_points points = sk_load_cell_points(grid, triangles + (size_t)i * 9u);
-        reaches[i] = sk_reach_by_rule(grid, points, sk_reach_by_box(sk_box_of(grid, points)));
+        const sk_box box = sk_box_of(grid, points);
+        const sk_reach reach = sk_reach_by_rule(grid, points, sk_reach_by_box(box));
+        if (sk_reach_kind(reach) == SK_REACH_LARGE) units += sk_longest_side(box) / SK_LONG_ROW;
+        reaches[i] = sk_reach_in_bin(reach, box, bins);
     }
+    return units;
 }
 
 #endif
@@ -52,11 +50,6 @@ SK_FUNCTION sk_run_of_triangles sk_make_run(SK_GLOBAL sk_u32* next, SK_GLOBAL sk
     return r;
 }
 
-/** A cell's number in its bin: x + 16 y + 256 z. */
-SK_FUNCTION sk_u32 sk_cell_in_bin(sk_u32 x, sk_u32 y, sk_u32 z) {
-    return (x % SK_BIN_SIDE) + SK_BIN_SIDE * ((y % SK_BIN_SIDE) + SK_BIN_SIDE * (z % SK_BIN_SIDE));
-}
-
 /** Counts a pair, or puts it where it belongs. */
 SK_FUNCTION void sk_hand_over(sk_run_of_triangles run, sk_u32 x, sk_u32 y, sk_u32 z, sk_u32 triangle, const int put) {
     SK_GLOBAL sk_u32* next = run.next + sk_number_at(run.bins, x / SK_BIN_SIDE, y / SK_BIN_SIDE, z / SK_BIN_SIDE);
@@ -68,42 +61,28 @@ SK_FUNCTION void sk_hand_over(sk_run_of_triangles run, sk_u32 x, sk_u32 y, sk_u3
     }
 }
 
-/** Bits of a mask that are `cells` or more cells from the corner along an axis: its bits there repeated. */
-SK_FUNCTION sk_u64 sk_beyond_x(sk_u32 cells) { return (((sk_u64)0xf << cells & 0xfu) * 0x11111111u) * (((sk_u64)1 << 32) + 1u); }
-SK_FUNCTION sk_u64 sk_beyond_y(sk_u32 cells) { return (((sk_u64)0xffffu << 4u * cells & 0xffffu) * 0x10001u) * (((sk_u64)1 << 32) + 1u); }
-SK_FUNCTION sk_u64 sk_beyond_z(sk_u32 cells) { return ~(sk_u64)0 << 16u * cells; }
+/** The pairs of a triangle whose cells are in one bin. */
+SK_FUNCTION void sk_hand_over_bin(sk_run_of_triangles run, sk_reach reach, sk_u32 triangle, const int put) {
+    const sk_u32 first = reach.corner_z & 0xffffu;
+    sk_u32 place = run.next[reach.corner_xy];
+    if (!put) {
+        place += sk_bit_count(sk_reach_mask(reach));
+    } else {
+        for (sk_u64 rest = sk_reach_mask(reach); rest != 0u; rest &= rest - 1u) {
+            run.cells[place] = (sk_u16)(first + sk_bin_step(sk_bit_count((rest & (~rest + 1u)) - 1u)));
+            run.triangles[place] = triangle;
+            place += 1u;
+        }
+    }
+    run.next[reach.corner_xy] = place;
+}
 
-/** The pairs of a triangle that has a mask. */
+/** The pairs of a triangle whose cells are in several. */
 SK_FUNCTION void sk_hand_over_mask(sk_run_of_triangles run, sk_reach reach, sk_u32 triangle, const int put) {
     const sk_dims corner = sk_reach_corner(reach);
-    const sk_u64 mask = sk_reach_mask(reach);
-    const sk_u32 left_x = SK_BIN_SIDE - corner.x % SK_BIN_SIDE, left_y = SK_BIN_SIDE - corner.y % SK_BIN_SIDE,
-                 left_z = SK_BIN_SIDE - corner.z % SK_BIN_SIDE;
-    sk_u64 beyond = 0u;
-    if (left_x < 4u) beyond |= sk_beyond_x(left_x);
-    if (left_y < 4u) beyond |= sk_beyond_y(left_y);
-    if (left_z < 4u) beyond |= sk_beyond_z(left_z);
-    if ((mask & beyond) == 0u) {
-        SK_GLOBAL sk_u32* next =
-            run.next + sk_number_at(run.bins, corner.x / SK_BIN_SIDE, corner.y / SK_BIN_SIDE, corner.z / SK_BIN_SIDE);
-        sk_u32 place = *next;
-        if (put) {
-            const sk_u32 first = sk_cell_in_bin(corner.x, corner.y, corner.z);
-            for (sk_u64 rest = mask; rest != 0u; rest &= rest - 1u) {
-                const sk_u32 bit = sk_bit_count((rest & (~rest + 1u)) - 1u);
-                run.cells[place] = (sk_u16)(first + ((bit & 3u) | (bit & 12u) << 2 | (bit & 48u) << 4));
-                run.triangles[place] = triangle;
-                place += 1u;
-            }
-        } else {
-            place += sk_bit_count(mask);
-        }
-        *next = place;
-    } else {
-        for (sk_u64 rest = mask; rest != 0u; rest &= rest - 1u) {
-            const sk_u32 bit = sk_bit_count((rest & (~rest + 1u)) - 1u);
-            sk_hand_over(run, corner.x + (bit & 3u), corner.y + (bit >> 2 & 3u), corner.z + (bit >> 4), triangle, put);
-        }
+    for (sk_u64 rest = sk_reach_mask(reach); rest != 0u; rest &= rest - 1u) {
+        const sk_u32 bit = sk_bit_count((rest & (~rest + 1u)) - 1u);
+        sk_hand_over(run, corner.x + (bit & 3u), corner.y + (bit >> 2 & 3u), corner.z + (bit >> 4), triangle, put);
     }
 }
 
@@ -135,18 +114,10 @@ SK_FUNCTION sk_u32 sk_hand_over_row(sk_run_of_triangles run, SetkaGridHeader gri
     return count;
 }
 
-/**
- * Adds up what the large triangles first to end - 1 have at least: as many cells as along their longest axes, in units of SK_LONG_ROW. Whether all
- * known so far have too many.
- */
-SK_FUNCTION int sk_have_too_many(sk_u32 first, sk_u32 end, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
-                                 SK_GLOBAL const sk_reach* reaches, sk_u32 most_units, SK_GLOBAL sk_u32* report) {
+/** Adds up in how many cells large triangles are at least. Whether all known so far are in too many. */
+SK_FUNCTION int sk_have_too_many(sk_u64 units, sk_u32 most_units, SK_GLOBAL sk_u32* report) {
     SK_GLOBAL sk_u32* total = report + SK_TOTAL_LONG;
-    sk_u64 units = 0u;
-    for (sk_u32 i = first; i < end; ++i)
-        if (sk_reach_kind(reaches[i]) == SK_REACH_LARGE)
-            units += sk_longest_side(sk_box_of(grid, sk_load_cell_points(grid, triangles + (size_t)i * 9u))) / SK_LONG_ROW;
-    /* To add 0 is to read what others may be adding to; at most twice as much is ever there. */
+    /* To add 0 is to read what others may be adding to; no work-item adds more than what is too much. */
     if (units != 0u && sk_atomic_add(total, 0u) < most_units)
         (void)sk_atomic_add(total, units < most_units ? (sk_u32)units : most_units);
     return sk_atomic_add(total, 0u) >= most_units;
@@ -161,7 +132,9 @@ SK_FUNCTION void sk_hand_over_run(sk_run_of_triangles run, sk_u32 first, sk_u32 
                                   SK_GLOBAL sk_u32* report, const int put) {
     for (sk_u32 i = first; i < end; ++i) {
         const sk_reach reach = reaches[i];
-        if (sk_reach_kind(reach) == SK_REACH_MASK) {
+        if (sk_reach_kind(reach) == SK_REACH_IN_BIN) {
+            sk_hand_over_bin(run, reach, i, put);
+        } else if (sk_reach_kind(reach) == SK_REACH_MASK) {
             sk_hand_over_mask(run, reach, i, put);
         } else {
             const sk_cell_triangle t = sk_load_cell_triangle(grid, triangles + (size_t)i * 9u);
@@ -186,8 +159,7 @@ SK_FUNCTION void sk_count_run(sk_u32 r, sk_u32 length, sk_u32 bins, SetkaGridHea
     const sk_run_of_triangles run = sk_make_run(own, (SK_GLOBAL sk_u16*)0, (SK_GLOBAL sk_u32*)0, grid);
     for (sk_u32 b = 0u; b < bins; ++b) own[b] = 0u;
     if (sk_block_count(run.bins) <= bins) {
-        sk_find_reaches(first, end, grid, triangles, reaches);
-        if (!sk_have_too_many(first, end, grid, triangles, reaches, most_units, report))
+        if (!sk_have_too_many(sk_find_reaches(first, end, grid, triangles, reaches), most_units, report))
             sk_hand_over_run(run, first, end, grid, triangles, reaches, report, 0);
     }
 }
@@ -333,7 +305,7 @@ SK_FUNCTION void sk_place_bin(sk_u32 bin, sk_u32 first, sk_u32 end, SetkaGridHea
                 list.offset = block.clearance;
                 for (sk_u64 rest = sk_mask_of(block); rest != 0u; rest &= rest - 1u) {
                     const sk_u32 bit = sk_bit_count((rest & (~rest + 1u)) - 1u);
-                    SK_GLOBAL sk_u32* counter = counters + (corner + ((bit & 3u) | (bit & 12u) << 2 | (bit & 48u) << 4));
+                    SK_GLOBAL sk_u32* counter = counters + (corner + sk_bin_step(bit));
                     list.count = *counter;
                     *counter = list.offset;
                     lists[r] = list;

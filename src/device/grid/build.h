@@ -12,6 +12,9 @@
 #include "device/grid/resolution.h"
 #include "device/math.h"
 #include "device/scan.h"
+#if SK_WIDTH > 1
+#include "device/lanes.h"
+#endif
 
 /** Words of a box: two corners. */
 #define SK_BOUNDS_VALUES 6u
@@ -46,6 +49,63 @@ SK_FUNCTION sk_extremes sk_transform_triangle(sk_u32 i, sk_u32 instance_count, S
     return seen;
 }
 
+#if SK_WIDTH > 1
+
+/**
+ * Stage 1 of triangles first to end - 1, by a work-item alone: the sums of sk_transform_point(), those of x, y and z side by side. What is the same
+ * for all triangles of an instance is found once.
+ */
+SK_FUNCTION sk_extremes sk_transform_run(sk_u32 first, sk_u32 end, sk_u32 instance_count, SK_GLOBAL const float* positions,
+                                         SK_GLOBAL const sk_u32* indices, SK_GLOBAL const SetkaInstance* instances,
+                                         SK_GLOBAL const sk_u32* instance_starts, SK_GLOBAL float* triangles,
+                                         SK_GLOBAL sk_u32* first_bad) {
+    const sk_f4 zero = sk_same_f4(0.0f);
+    sk_f4 low = sk_same_f4(sk_bits_float(0x7f800000u)), high = -low, odd = zero;
+    sk_extremes seen;
+    for (sk_u32 i = first; i < end;) {
+        SK_GLOBAL const SetkaInstance* instance = instances + sk_find_segment(instance_starts, instance_count, i);
+        SK_GLOBAL const sk_u32* index = indices + (size_t)(instance->first_index + (i - instance->first_triangle)) * 3u;
+        SK_GLOBAL const float* vertices = positions + (size_t)instance->first_vertex * 3u;
+        SK_GLOBAL const float* m = instance->matrix;
+        const sk_f4 row_x = sk_load_f4(m), row_y = sk_load_f4(m + 4), row_z = sk_load_f4(m + 8);
+        const sk_f4 columns01 = sk_shuffle(row_x, row_y, 0, 4, 1, 5), columns23 = sk_shuffle(row_x, row_y, 2, 6, 3, 7);
+        const sk_f4 column0 = sk_shuffle(columns01, row_z, 0, 1, 4, 4), column1 = sk_shuffle(columns01, row_z, 2, 3, 5, 5);
+        const sk_f4 column2 = sk_shuffle(columns23, row_z, 0, 1, 6, 6), column3 = sk_shuffle(columns23, row_z, 2, 3, 7, 7);
+        const sk_u32 stop = sk_min_u32(end, instance_starts[(instance - instances) + 1]);
+        for (; i < stop; ++i, index += 3) {
+            SK_GLOBAL float* triangle = triangles + (size_t)i * 9u;
+            for (sk_u32 k = 0u; k < 3u; ++k) {
+                SK_GLOBAL const float* p = vertices + (size_t)index[k] * 3u;
+                const sk_f4 sum = ((column0 * sk_same_f4(p[0]) + column1 * sk_same_f4(p[1])) + column2 * sk_same_f4(p[2])) + column3;
+                const sk_f4 q = sum == zero ? zero : sum;
+                low = q < low ? q : low;
+                high = high < q ? q : high;
+                odd += q - q; /* NaN where q is not finite, and from then on */
+                if (k < 2u) {
+                    sk_store_f4(q, triangle + 3u * k); /* the next vertex comes over the fourth */
+                } else {
+                    triangle[6] = sk_lane(q, 0);
+                    triangle[7] = sk_lane(q, 1);
+                    triangle[8] = sk_lane(q, 2);
+                }
+            }
+        }
+    }
+    if (!(sk_lane(odd, 0) == 0.0f && sk_lane(odd, 1) == 0.0f && sk_lane(odd, 2) == 0.0f)) {
+        sk_u32 i = first, finite = 1u;
+        while (i < end && finite != 0u) {
+            for (sk_u32 c = 0u; c < 9u; ++c) finite &= (sk_u32)sk_is_finite(triangles[(size_t)i * 9u + c]);
+            if (finite != 0u) ++i;
+        }
+        (void)sk_atomic_max(first_bad, ~i);
+    }
+    seen.low = sk_make3(sk_lane(low, 0), sk_lane(low, 1), sk_lane(low, 2));
+    seen.high = sk_make3(sk_lane(high, 0), sk_lane(high, 1), sk_lane(high, 2));
+    return seen;
+}
+
+#endif
+
 /**
  * Stages 1 and 2: `elements` triangles a work-item, and the box of all, in the words of the report (limits.h): all are maxima, from 0 on.
  */
@@ -59,7 +119,15 @@ SK_FUNCTION void sk_grid_transform(SK_LOCAL sk_u32* scratch, sk_u32 n, sk_u32 el
     sk_extremes seen;
     seen.low = sk_make3(infinity, infinity, infinity);
     seen.high = sk_make3(-infinity, -infinity, -infinity);
-    for (sk_u32 k = 0u; k < elements; ++k) {
+#if SK_WIDTH > 1
+    const int is_run = size == 1u && first < n;
+    if (is_run)
+        seen = sk_transform_run((sk_u32)first, (sk_u32)(first + elements < n ? first + elements : n), instance_count, positions,
+                                indices, instances, instance_starts, triangles, report + SK_REPORT_BAD);
+#else
+    const int is_run = 0;
+#endif
+    for (sk_u32 k = 0u; k < elements && !is_run; ++k) {
         const sk_u64 i = first + (sk_u64)k * size;
         if (i < n)
             seen = sk_transform_triangle((sk_u32)i, instance_count, positions, indices, instances, instance_starts,

@@ -16,6 +16,8 @@
 /* While it is found out, what a mask is made by: */
 #define SK_REACH_PAIR 3u /* the rule, in two cells along each axis at most */
 #define SK_REACH_FOUR 4u /* the rule, in four */
+/* In builds with bins: a mask of cells in one bin, whose number and cell take the place of the corner's coordinates */
+#define SK_REACH_IN_BIN 5u
 
 /** 16 bytes, kept from counting to placing. Bit sk_bit_in_block() of the mask is a cell's, counted from the corner. */
 typedef struct SK_ALIGNED(16) sk_reach {
@@ -149,6 +151,34 @@ SK_FUNCTION sk_reach sk_reach_by_rule(SetkaGridHeader grid, sk_cell_points point
         r = sk_make_reach(corner, SK_REACH_MASK, sk_pair_mask(grid, points, corner));
     else if (kind == SK_REACH_FOUR)
         r = sk_make_reach(corner, SK_REACH_MASK, sk_rule_mask(grid, sk_make_cell_triangle(grid, points), corner));
+    return r;
+}
+
+/** Bins along the axes, for so many cells (bins.h). */
+SK_FUNCTION sk_dims sk_bin_dims(sk_dims cells) {
+    sk_dims r;
+    r.x = (cells.x + SK_BIN_SIDE - 1u) / SK_BIN_SIDE;
+    r.y = (cells.y + SK_BIN_SIDE - 1u) / SK_BIN_SIDE;
+    r.z = (cells.z + SK_BIN_SIDE - 1u) / SK_BIN_SIDE;
+    return r;
+}
+
+/** A cell's number in its bin, x + 16 y + 256 z; and how far on the cell of a mask's bit is. */
+SK_FUNCTION sk_u32 sk_cell_in_bin(sk_u32 x, sk_u32 y, sk_u32 z) {
+    return (x % SK_BIN_SIDE) + SK_BIN_SIDE * ((y % SK_BIN_SIDE) + SK_BIN_SIDE * (z % SK_BIN_SIDE));
+}
+SK_FUNCTION sk_u32 sk_bin_step(sk_u32 bit) { return (bit & 3u) | (bit & 12u) << 2 | (bit & 48u) << 4; }
+
+/** A reach by its mask, as SK_REACH_IN_BIN if the box is in one bin. */
+SK_FUNCTION sk_reach sk_reach_in_bin(sk_reach reach, sk_box box, sk_dims bins) {
+    const int is_in_bin = (int)(box.first.x / SK_BIN_SIDE == box.last.x / SK_BIN_SIDE) &
+                          (int)(box.first.y / SK_BIN_SIDE == box.last.y / SK_BIN_SIDE) &
+                          (int)(box.first.z / SK_BIN_SIDE == box.last.z / SK_BIN_SIDE);
+    sk_reach r = reach;
+    if (is_in_bin && sk_reach_kind(reach) == SK_REACH_MASK) {
+        r.corner_xy = sk_number_at(bins, box.first.x / SK_BIN_SIDE, box.first.y / SK_BIN_SIDE, box.first.z / SK_BIN_SIDE);
+        r.corner_z = sk_cell_in_bin(box.first.x, box.first.y, box.first.z) | SK_REACH_IN_BIN << 16;
+    }
     return r;
 }
 

@@ -20,15 +20,23 @@ SK_FUNCTION sk_vec3N sk_to_cells_lanes(SetkaGridHeader grid, sk_fN x, sk_fN y, s
                       (z - grid.origin[2]) * grid.inverse_cell_size);
 }
 
-SK_FUNCTION sk_points_lanes sk_gather_cell_points(SetkaGridHeader grid, SK_GLOBAL const float* triangles,
-                                                  sk_iN numbers) {
-    const sk_columns a = sk_gather4(triangles, numbers, 9u), b = sk_gather4(triangles + 4, numbers, 9u);
-    const sk_fN last = sk_gather_f(triangles + 8, numbers, 9u);
+SK_FUNCTION sk_points_lanes sk_make_points(SetkaGridHeader grid, sk_columns a, sk_columns b, sk_fN last) {
     sk_points_lanes r;
     r.p0 = sk_to_cells_lanes(grid, a.a, a.b, a.c);
     r.p1 = sk_to_cells_lanes(grid, a.d, b.a, b.b);
     r.p2 = sk_to_cells_lanes(grid, b.c, b.d, last);
     return r;
+}
+
+/** Of triangles with these numbers, or of SK_WIDTH from the first on. */
+SK_FUNCTION sk_points_lanes sk_gather_cell_points(SetkaGridHeader grid, SK_GLOBAL const float* triangles,
+                                                  sk_iN numbers) {
+    return sk_make_points(grid, sk_gather4(triangles, numbers, 9u), sk_gather4(triangles + 4, numbers, 9u),
+                          sk_gather_f(triangles + 8, numbers, 9u));
+}
+SK_FUNCTION sk_points_lanes sk_load_cell_points_lanes(SetkaGridHeader grid, SK_GLOBAL const float* triangles) {
+    return sk_make_points(grid, sk_load_columns(triangles, 9u), sk_load_columns(triangles + 4, 9u),
+                          sk_load_column(triangles + 8, 9u));
 }
 
 /** sk_cell() */
@@ -52,14 +60,20 @@ SK_FUNCTION sk_extent_lanes sk_extent_along(sk_fN a, sk_fN b, sk_fN c, float aro
     return r;
 }
 
-/** What the boxes say (sk_reach_by_box()); of a mask the cells along x, y and z. */
+SK_FUNCTION void sk_store_lanes(sk_iN v, sk_u32* target) { sk_store_i(v, (sk_i32*)target); }
+
+/** sk_reach_by_box() of each lane as sk_reach_in_bin() has it, what lanes have to wait for the rule, and corners for that. */
 typedef struct sk_boxes_lanes {
-    sk_u32 kind[SK_WIDTH];
-    sk_u32 x[SK_WIDTH], y[SK_WIDTH], z[SK_WIDTH];
-    sk_u32 nx[SK_WIDTH], ny[SK_WIDTH], nz[SK_WIDTH];
+    sk_u32 words[4][SK_WIDTH]; /* of sk_reach */
+    sk_u32 xy[SK_WIDTH], z[SK_WIDTH], most[SK_WIDTH];
+    sk_u32 pairs, fours, large; /* bits of lanes */
 } sk_boxes_lanes;
 
-SK_FUNCTION void sk_store_lanes(sk_iN v, sk_u32* target) { sk_store_i(v, (sk_i32*)target); }
+/** The lowest `count` bits, 1 to 4, of a mask's word. */
+SK_FUNCTION sk_iN sk_run_lanes(sk_iN count, const sk_u32 stride) {
+    const sk_iN most = sk_min_i(count, sk_same_i(4));
+    return stride == 1u ? (sk_same_i(1) << most) - 1 : 0x1111 & ~(sk_same_i(-2) << (most * 4 - 1));
+}
 
 SK_FUNCTION sk_boxes_lanes sk_boxes_of(SetkaGridHeader grid, sk_points_lanes points) {
     const float around = grid.tolerance + grid.tolerance;
@@ -69,17 +83,29 @@ SK_FUNCTION sk_boxes_lanes sk_boxes_of(SetkaGridHeader grid, sk_points_lanes poi
     const sk_iN most = sk_max_i(sk_max_i(x.count, y.count), z.count);
     const sk_iN single = (x.count == 1) + (y.count == 1) + (z.count == 1); /* each true one is -1 */
     const sk_iN is_run = (single <= -2) & (most <= 4) & x.is_clear & y.is_clear & z.is_clear;
-    sk_iN kind = sk_select_i(most <= (sk_i32)SK_SMALL_BOX, sk_same_i(SK_REACH_ROWS), sk_same_i(SK_REACH_LARGE));
+    const sk_iN is_pair = ~is_run & (most <= 2), is_four = ~is_run & (most > 2) & (most <= 4);
+    const sk_iN is_large = most > (sk_i32)SK_SMALL_BOX, is_rows = (most > 4) & ~is_large;
+    const sk_iN low = sk_run_lanes(x.count, 1u) | sk_run_lanes(y.count, 4u) | ((z.count >= 2) & 0x10000);
+    const sk_iN high = ((z.count >= 3) & 1) | ((z.count >= 4) & 0x10000);
+    const sk_iN xy = x.first | y.first << 16;
+    const sk_dims bins = sk_bin_dims(sk_cell_dims(grid));
+    const sk_iN in_x = x.first & 15, in_y = y.first & 15, in_z = z.first & 15;
+    const sk_iN is_in_bin = (in_x + x.count <= (sk_i32)SK_BIN_SIDE) & (in_y + y.count <= (sk_i32)SK_BIN_SIDE) &
+                            (in_z + z.count <= (sk_i32)SK_BIN_SIDE) & (most <= 4);
+    const sk_iN bin = ((z.first >> 4) * (sk_i32)bins.y + (y.first >> 4)) * (sk_i32)bins.x + (x.first >> 4);
+    const sk_iN kind = (is_in_bin & (sk_i32)SK_REACH_IN_BIN) | (is_rows & (sk_i32)SK_REACH_ROWS) |
+                       (is_large & (sk_i32)SK_REACH_LARGE);
     sk_boxes_lanes r;
-    kind = sk_select_i(most <= 4, sk_same_i(SK_REACH_FOUR), kind);
-    kind = sk_select_i(most <= 2, sk_same_i(SK_REACH_PAIR), kind);
-    sk_store_lanes(sk_select_i(is_run, sk_same_i(SK_REACH_MASK), kind), r.kind);
-    sk_store_lanes(x.first, r.x);
-    sk_store_lanes(y.first, r.y);
+    sk_store_lanes(low & is_run, r.words[0]);
+    sk_store_lanes(high & is_run, r.words[1]);
+    sk_store_lanes(sk_select_i(is_in_bin, bin, xy), r.words[2]);
+    sk_store_lanes(sk_select_i(is_in_bin, in_x | in_y << 4 | in_z << 8, z.first) | kind << 16, r.words[3]);
+    sk_store_lanes(xy, r.xy);
     sk_store_lanes(z.first, r.z);
-    sk_store_lanes(x.count, r.nx);
-    sk_store_lanes(y.count, r.ny);
-    sk_store_lanes(z.count, r.nz);
+    sk_store_lanes(most, r.most);
+    r.pairs = sk_lane_bits(is_pair);
+    r.fours = sk_lane_bits(is_four);
+    r.large = sk_lane_bits(is_large);
     return r;
 }
 
@@ -258,91 +284,90 @@ SK_FUNCTION sk_u64 sk_turn_mask(sk_u64 mask, sk_u32 axis) {
 /** Triangles that wait until there are as many as lanes, with the corners of their boxes. */
 typedef struct sk_waiting {
     sk_u32 count;
-    sk_u32 triangles[SK_WIDTH], x[SK_WIDTH], y[SK_WIDTH], z[SK_WIDTH];
+    sk_u32 triangles[SK_WIDTH], xy[SK_WIDTH], z[SK_WIDTH];
 } sk_waiting;
 
-/** Finds the reaches of those that wait, by the rule. */
+/** Finds the masks of those that wait, by the rule. */
 SK_FUNCTION void sk_reach_waiting(sk_waiting* waiting, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
                                   SK_GLOBAL sk_reach* reaches, const int cells) {
 #define SK_NUMBER(k) (sk_i32) waiting->triangles[k]
-#define SK_X(k) (sk_i32) waiting->x[k]
-#define SK_Y(k) (sk_i32) waiting->y[k]
+#define SK_XY(k) (sk_i32) waiting->xy[k]
 #define SK_Z(k) (sk_i32) waiting->z[k]
-    const sk_rule_lanes rule = sk_rule_of(grid, sk_gather_cell_points(grid, triangles, SK_INTS(SK_NUMBER)), SK_INTS(SK_X),
-                                          SK_INTS(SK_Y), SK_INTS(SK_Z), cells);
+    const sk_iN xy = SK_INTS(SK_XY);
+    const sk_rule_lanes rule = sk_rule_of(grid, sk_gather_cell_points(grid, triangles, SK_INTS(SK_NUMBER)), xy & 0xffff,
+                                          xy >> 16 & 0xffff, SK_INTS(SK_Z), cells);
 #undef SK_NUMBER
-#undef SK_X
-#undef SK_Y
+#undef SK_XY
 #undef SK_Z
     for (sk_u32 k = 0u; k < waiting->count; ++k) {
-        sk_dims corner;
-        corner.x = waiting->x[k];
-        corner.y = waiting->y[k];
-        corner.z = waiting->z[k];
-        reaches[waiting->triangles[k]] = sk_make_reach(
-            corner, SK_REACH_MASK, sk_turn_mask((sk_u64)rule.low[k] | (sk_u64)rule.high[k] << 32, rule.axis[k]));
+        const sk_u64 mask = sk_turn_mask((sk_u64)rule.low[k] | (sk_u64)rule.high[k] << 32, rule.axis[k]);
+        SK_GLOBAL sk_reach* reach = reaches + waiting->triangles[k];
+        reach->mask_low = (sk_u32)mask;
+        reach->mask_high = (sk_u32)(mask >> 32);
     }
     waiting->count = 0u;
 }
 
-/** Lets a triangle wait, and finds the reaches of all that do if they are enough. */
-SK_FUNCTION void sk_let_wait(sk_waiting* waiting, sk_u32 triangle, const sk_boxes_lanes* boxes, sk_u32 lane,
+/** Lets triangles start + k wait, for each bit k, and finds the masks of all that do as soon as they are enough. */
+SK_FUNCTION void sk_let_wait(sk_waiting* waiting, sk_u32 start, sk_u32 bits, const sk_boxes_lanes* boxes,
                              SetkaGridHeader grid, SK_GLOBAL const float* triangles, SK_GLOBAL sk_reach* reaches,
                              const int cells) {
-    const sk_u32 k = waiting->count;
-    waiting->triangles[k] = triangle;
-    waiting->x[k] = boxes->x[lane];
-    waiting->y[k] = boxes->y[lane];
-    waiting->z[k] = boxes->z[lane];
-    waiting->count = k + 1u;
-    if (k + 1u == SK_WIDTH) sk_reach_waiting(waiting, grid, triangles, reaches, cells);
+    for (sk_u32 rest = bits; rest != 0u; rest &= rest - 1u) {
+        const sk_u32 lane = sk_popcount((rest & (~rest + 1u)) - 1u), k = waiting->count;
+        waiting->triangles[k] = start + lane;
+        waiting->xy[k] = boxes->xy[lane];
+        waiting->z[k] = boxes->z[lane];
+        waiting->count = k + 1u;
+        if (k + 1u == SK_WIDTH) sk_reach_waiting(waiting, grid, triangles, reaches, cells);
+    }
 }
 
-/** Finds the reaches of those that are left. Lanes that stay empty have a triangle that is there. */
+/** Finds the masks of those that are left. Lanes that stay empty have a triangle that is there. */
 SK_FUNCTION void sk_reach_rest(sk_waiting* waiting, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
                                SK_GLOBAL sk_reach* reaches, const int cells) {
     if (waiting->count == 0u) return;
     for (sk_u32 k = waiting->count; k < SK_WIDTH; ++k) {
         waiting->triangles[k] = waiting->triangles[0];
-        waiting->x[k] = waiting->x[0];
-        waiting->y[k] = waiting->y[0];
+        waiting->xy[k] = waiting->xy[0];
         waiting->z[k] = waiting->z[0];
     }
     sk_reach_waiting(waiting, grid, triangles, reaches, cells);
 }
 
-/** The reaches of triangles first to end - 1. */
-SK_FUNCTION void sk_find_reaches(sk_u32 first, sk_u32 end, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
-                                 SK_GLOBAL sk_reach* reaches) {
+/** The reaches of triangles first to end - 1, and in how many cells large ones are at least, in units of SK_LONG_ROW. */
+SK_FUNCTION sk_u64 sk_find_reaches(sk_u32 first, sk_u32 end, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
+                                   SK_GLOBAL sk_reach* reaches) {
     sk_waiting pairs, fours;
+    sk_u64 units = 0u;
     pairs.count = 0u;
     fours.count = 0u;
     for (sk_u32 start = first; start < end; start += SK_WIDTH) {
-        const sk_u32 count = sk_min_u32(end - start, SK_WIDTH);
+        const sk_u32 count = sk_min_u32(end - start, SK_WIDTH), lanes = (2u << (count - 1u)) - 1u;
+        sk_points_lanes points;
+        sk_boxes_lanes boxes;
 #define SK_NEXT(k) (sk_i32)(start + ((k) < count ? (k) : 0u))
-        const sk_boxes_lanes boxes = sk_boxes_of(grid, sk_gather_cell_points(grid, triangles, SK_INTS(SK_NEXT)));
+        if (count == SK_WIDTH)
+            points = sk_load_cell_points_lanes(grid, triangles + (size_t)start * 9u);
+        else
+            points = sk_gather_cell_points(grid, triangles, SK_INTS(SK_NEXT));
 #undef SK_NEXT
+        boxes = sk_boxes_of(grid, points);
         for (sk_u32 k = 0u; k < count; ++k) {
-            const sk_u32 kind = boxes.kind[k];
-            if (kind == SK_REACH_PAIR) {
-                sk_let_wait(&pairs, start + k, &boxes, k, grid, triangles, reaches, 2);
-            } else if (kind == SK_REACH_FOUR) {
-                sk_let_wait(&fours, start + k, &boxes, k, grid, triangles, reaches, 4);
-            } else {
-                sk_dims corner;
-                corner.x = boxes.x[k];
-                corner.y = boxes.y[k];
-                corner.z = boxes.z[k];
-                reaches[start + k] = sk_make_reach(
-                    corner, kind,
-                    kind == SK_REACH_MASK
-                        ? sk_run(1u, boxes.nx[k]) | sk_run(4u, boxes.ny[k]) | sk_run(16u, boxes.nz[k])
-                        : 0u);
-            }
+            sk_reach reach;
+            reach.mask_low = boxes.words[0][k];
+            reach.mask_high = boxes.words[1][k];
+            reach.corner_xy = boxes.words[2][k];
+            reach.corner_z = boxes.words[3][k];
+            reaches[start + k] = reach;
         }
+        for (sk_u32 k = 0u, large = boxes.large & lanes; large != 0u; ++k, large >>= 1)
+            units += (large & 1u) != 0u ? boxes.most[k] / SK_LONG_ROW : 0u;
+        sk_let_wait(&pairs, start, boxes.pairs & lanes, &boxes, grid, triangles, reaches, 2);
+        sk_let_wait(&fours, start, boxes.fours & lanes, &boxes, grid, triangles, reaches, 4);
     }
     sk_reach_rest(&pairs, grid, triangles, reaches, 2);
     sk_reach_rest(&fours, grid, triangles, reaches, 4);
+    return units;
 }
 
 #endif
