@@ -286,6 +286,27 @@ SK_FUNCTION void sk_tally_bins(sk_u32 first, sk_u32 n, sk_u32 step, sk_u32 capac
     if (longest > SK_LONG_LIST) (void)sk_atomic_max(report + SK_TOTAL_LONGEST, longest);
 }
 
+/** Marks that a bin's row of blocks shares: its own, and those of all rows up to 1, 2 and 3 away. */
+typedef struct sk_rings {
+    sk_u32 near1, near2, near3;
+} sk_rings;
+
+SK_FUNCTION sk_rings sk_rings_around(sk_dims blocks, sk_u32 x, sk_u32 y, sk_u32 z, SK_GLOBAL const sk_u32* marks) {
+    SK_GLOBAL const sk_u32* column = marks + x / SK_MARKED_BLOCKS;
+    sk_rings r;
+    r.near1 = column[(size_t)(z * blocks.y + y) * sk_words_in_row(blocks)] | sk_marks_around(blocks, y, z, 1u, column);
+    r.near2 = r.near1 | sk_marks_around(blocks, y, z, 2u, column);
+    r.near3 = r.near2 | sk_marks_around(blocks, y, z, 3u, column);
+    return r;
+}
+
+/** sk_find_clearance() of block x of the row. */
+SK_FUNCTION sk_u32 sk_clearance_in(sk_rings rings, sk_u32 x) {
+    const sk_u32 free1 = 1u - sk_is_marked_near(rings.near1, x, 1u);
+    const sk_u32 free2 = free1 & (1u - sk_is_marked_near(rings.near2, x, 2u));
+    return 4u * (1u + free1 + free2 + (free2 & (1u - sk_is_marked_near(rings.near3, x, 3u)))) - 1u;
+}
+
 /** The lists of a bin: records of blocks and cells, and references. */
 SK_FUNCTION void sk_place_bin(sk_u32 bin, sk_u32 first, sk_u32 end, SetkaGridHeader grid, SK_GLOBAL const sk_u16* cells,
                               SK_GLOBAL const sk_u32* triangles, SK_GLOBAL sk_u32* counters,
@@ -295,7 +316,8 @@ SK_FUNCTION void sk_place_bin(sk_u32 bin, sk_u32 first, sk_u32 end, SetkaGridHea
     const sk_bin_blocks own = sk_blocks_of_bin(dims, sk_bin_dims(sk_cell_dims(grid)), bin);
     if (first < end) sk_count_in_bin(first, end, cells, counters);
     for (sk_u32 z = 0u; z < own.count.z; ++z)
-        for (sk_u32 y = 0u; y < own.count.y; ++y)
+        for (sk_u32 y = 0u; y < own.count.y; ++y) {
+            const sk_rings rings = sk_rings_around(dims, own.first.x, own.first.y + y, own.first.z + z, marks);
             for (sk_u32 x = 0u; x < own.count.x; ++x) {
                 const sk_u32 b = sk_number_at(dims, own.first.x + x, own.first.y + y, own.first.z + z);
                 const sk_u32 corner = sk_cell_in_bin(4u * x, 4u * y, 4u * z);
@@ -312,9 +334,10 @@ SK_FUNCTION void sk_place_bin(sk_u32 bin, sk_u32 first, sk_u32 end, SetkaGridHea
                     list.offset += list.count;
                     r += 1u;
                 }
-                block.clearance = sk_mask_of(block) != 0u ? 0u : sk_find_clearance(dims, b, marks);
+                block.clearance = sk_mask_of(block) != 0u ? 0u : sk_clearance_in(rings, own.first.x + x);
                 blocks[b] = block;
             }
+        }
     for (sk_u32 p = first; p < end; ++p) {
         SK_GLOBAL sk_u32* counter = counters + cells[p];
         const sk_u32 place = *counter;

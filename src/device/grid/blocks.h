@@ -157,22 +157,33 @@ SK_FUNCTION sk_u32 sk_row_at(sk_u32 from, sk_i32 distance, sk_u32 rows) {
     return at < 0 ? 0u : sk_min_u32((sk_u32)at, rows - 1u);
 }
 
+/** The words at `column` of all rows whose distance from row (y, z) is `around` in one direction and no more in the other. */
+SK_FUNCTION sk_u32 sk_marks_around(sk_dims blocks, sk_u32 y, sk_u32 z, sk_u32 around, SK_GLOBAL const sk_u32* column) {
+    const sk_u32 words = sk_words_in_row(blocks);
+    const sk_i32 far = (sk_i32)around;
+    sk_u32 some = 0u;
+    for (sk_i32 dz = -far; dz <= far; ++dz) {
+        const sk_i32 step = dz == far || dz == -far ? 1 : 2 * far;
+        const sk_u32 first = sk_row_at(z, dz, blocks.z) * blocks.y;
+        for (sk_i32 dy = -far; dy <= far; dy += step)
+            some |= column[(size_t)(first + sk_row_at(y, dy, blocks.y)) * words];
+    }
+    return some;
+}
+
+/** Whether a block is marked in a word, up to `around` blocks from block x; the word is that of its column. */
+SK_FUNCTION sk_u32 sk_is_marked_near(sk_u32 word, sk_u32 x, sk_u32 around) {
+    return (word >> (x % SK_MARKED_BLOCKS + 8u - around) & ((2u << 2u * around) - 1u)) != 0u ? 1u : 0u;
+}
+
 /** The clearance of block b, which is empty. */
 SK_FUNCTION sk_u32 sk_find_clearance(sk_dims blocks, sk_u32 b, SK_GLOBAL const sk_u32* marks) {
-    const sk_u32 words = sk_words_in_row(blocks), row = b / blocks.x;
-    const sk_u32 x = b % blocks.x, y = row % blocks.y, z = row / blocks.y;
+    const sk_u32 row = b / blocks.x, x = b % blocks.x, y = row % blocks.y, z = row / blocks.y;
     SK_GLOBAL const sk_u32* column = marks + x / SK_MARKED_BLOCKS;
-    const sk_u32 bit = x % SK_MARKED_BLOCKS + 8u;
-    sk_u32 some = column[(size_t)row * words], around = 1u; /* of all rows that are so near; the next distance */
+    sk_u32 some = column[(size_t)row * sk_words_in_row(blocks)], around = 1u; /* of all rows that are so near; the next distance */
     while (around <= SK_FAR) {
-        const sk_i32 far = (sk_i32)around;
-        for (sk_i32 dz = -far; dz <= far; ++dz) {
-            const sk_i32 step = dz == far || dz == -far ? 1 : 2 * far;
-            const sk_u32 first = sk_row_at(z, dz, blocks.z) * blocks.y;
-            for (sk_i32 dy = -far; dy <= far; dy += step)
-                some |= column[(size_t)(first + sk_row_at(y, dy, blocks.y)) * words];
-        }
-        if ((some >> (bit - around) & ((2u << 2u * around) - 1u)) != 0u) break;
+        some |= sk_marks_around(blocks, y, z, around, column);
+        if (sk_is_marked_near(some, x, around) != 0u) break;
         around += 1u;
     }
     return 4u * around - 1u;
