@@ -58,6 +58,7 @@ typedef ushort sk_u16;
 #define sk_sqrt(f) sqrt(f)
 #define sk_floor(f) floor(f)
 #define sk_popcount(u) popcount(u)
+#define sk_popcount_u64(u) ((sk_u32)popcount((sk_u64)(u)))
 #define sk_atomic_min(p, v) atomic_min(p, v)
 #define sk_atomic_max(p, v) atomic_max(p, v)
 #define sk_atomic_add(p, v) atomic_add(p, v)

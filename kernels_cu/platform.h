@@ -34,6 +34,7 @@ typedef unsigned short sk_u16;
 #define sk_sqrt(f) __fsqrt_rn(f)
 #define sk_floor(f) floorf(f)
 #define sk_popcount(u) ((sk_u32)__popc(u))
+#define sk_popcount_u64(u) ((sk_u32)__popcll(u))
 #define sk_atomic_min(p, v) atomicMin(p, v)
 #define sk_atomic_max(p, v) atomicMax(p, v)
 #define sk_atomic_add(p, v) atomicAdd(p, v)

@@ -22,7 +22,7 @@
  *   sk_float_bits(f) sk_bits_float(u)                            bit casts
  *   sk_double_bits(d) sk_bits_double(u)                          the same of sk_u64, where SK_DOUBLE
  *   sk_sqrt(f) sk_floor(f)                                       correctly rounded
- *   sk_popcount(u)                                               how many bits of a sk_u32 are set
+ *   sk_popcount(u) sk_popcount_u64(u)                            how many bits of a sk_u32 or a sk_u64 are set
  *   sk_atomic_min(p, v) sk_atomic_max(p, v) sk_atomic_add(p, v)  on sk_u32 in global or local memory, return what was there;
  *   sk_atomic_or(p, v)                                           order-free uses only
  *

@@ -51,6 +51,7 @@ inline thread_local sk_u32 sk_host_group = 0;
 #define sk_double_bits(d) (std::bit_cast<sk_u64>(d))
 #define sk_bits_double(u) (std::bit_cast<double>(u))
 #define sk_popcount(u) (static_cast<sk_u32>(std::popcount(sk_u32{u})))
+#define sk_popcount_u64(u) (static_cast<sk_u32>(std::popcount(sk_u64{u})))
 #define sk_sqrt(f) (std::sqrt(f))
 #define sk_floor(f) (std::floor(f))
 

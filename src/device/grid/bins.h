@@ -69,7 +69,7 @@ SK_FUNCTION void sk_hand_over_bin(sk_run_of_triangles run, sk_reach reach, sk_u3
         place += sk_bit_count(sk_reach_mask(reach));
     } else {
         for (sk_u64 rest = sk_reach_mask(reach); rest != 0u; rest &= rest - 1u) {
-            run.cells[place] = (sk_u16)(first + sk_bin_step(sk_bit_count((rest & (~rest + 1u)) - 1u)));
+            run.cells[place] = (sk_u16)(first + sk_bin_step(sk_lowest_bit(rest)));
             run.triangles[place] = triangle;
             place += 1u;
         }
@@ -81,7 +81,7 @@ SK_FUNCTION void sk_hand_over_bin(sk_run_of_triangles run, sk_reach reach, sk_u3
 SK_FUNCTION void sk_hand_over_mask(sk_run_of_triangles run, sk_reach reach, sk_u32 triangle, const int put) {
     const sk_dims corner = sk_reach_corner(reach);
     for (sk_u64 rest = sk_reach_mask(reach); rest != 0u; rest &= rest - 1u) {
-        const sk_u32 bit = sk_bit_count((rest & (~rest + 1u)) - 1u);
+        const sk_u32 bit = sk_lowest_bit(rest);
         sk_hand_over(run, corner.x + (bit & 3u), corner.y + (bit >> 2 & 3u), corner.z + (bit >> 4), triangle, put);
     }
 }
@@ -326,7 +326,7 @@ SK_FUNCTION void sk_place_bin(sk_u32 bin, sk_u32 first, sk_u32 end, SetkaGridHea
                 sk_cell_list list;
                 list.offset = block.clearance;
                 for (sk_u64 rest = sk_mask_of(block); rest != 0u; rest &= rest - 1u) {
-                    const sk_u32 bit = sk_bit_count((rest & (~rest + 1u)) - 1u);
+                    const sk_u32 bit = sk_lowest_bit(rest);
                     SK_GLOBAL sk_u32* counter = counters + (corner + sk_bin_step(bit));
                     list.count = *counter;
                     *counter = list.offset;

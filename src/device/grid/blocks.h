@@ -82,7 +82,9 @@ SK_FUNCTION sk_u64 sk_mask_of(sk_block block) { return (sk_u64)block.mask_low | 
 SK_FUNCTION sk_u32 sk_has_bit(sk_block block, sk_u32 bit) {
     return (bit < 32u ? block.mask_low : block.mask_high) >> (bit & 31u) & 1u;
 }
-SK_FUNCTION sk_u32 sk_bit_count(sk_u64 mask) { return sk_popcount((sk_u32)mask) + sk_popcount((sk_u32)(mask >> 32)); }
+SK_FUNCTION sk_u32 sk_bit_count(sk_u64 mask) { return sk_popcount_u64(mask); }
+/** The number of the lowest bit of a mask that has one. */
+SK_FUNCTION sk_u32 sk_lowest_bit(sk_u64 mask) { return sk_popcount_u64(~mask & (mask - 1u)); }
 
 /** How many cells before this one the block has a record for. */
 SK_FUNCTION sk_u32 sk_rank_of(sk_block block, sk_u32 bit) {

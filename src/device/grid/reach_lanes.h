@@ -313,7 +313,7 @@ SK_FUNCTION void sk_let_wait(sk_waiting* waiting, sk_u32 start, sk_u32 bits, con
                              SetkaGridHeader grid, SK_GLOBAL const float* triangles, SK_GLOBAL sk_reach* reaches,
                              const int cells) {
     for (sk_u32 rest = bits; rest != 0u; rest &= rest - 1u) {
-        const sk_u32 lane = sk_popcount((rest & (~rest + 1u)) - 1u), k = waiting->count;
+        const sk_u32 lane = sk_lowest_bit(rest), k = waiting->count;
         waiting->triangles[k] = start + lane;
         waiting->xy[k] = boxes->xy[lane];
         waiting->z[k] = boxes->z[lane];

@@ -60,7 +60,7 @@ SK_FUNCTION void sk_take_mask(SetkaGridHeader grid, sk_scatter out, sk_reach rea
     const sk_slot_stride x = sk_slot_stride_of(grid, 0u), y = sk_slot_stride_of(grid, 1u), z = sk_slot_stride_of(grid, 2u);
     const sk_u32 x0 = reach.corner_xy & 0xffffu, y0 = reach.corner_xy >> 16, z0 = reach.corner_z & 0xffffu;
     for (sk_u64 rest = sk_reach_mask(reach); rest != 0u; rest &= rest - 1u) {
-        const sk_u32 bit = sk_bit_count((rest & (~rest + 1u)) - 1u);
+        const sk_u32 bit = sk_lowest_bit(rest);
         const sk_u32 slot = sk_slot_part(x, x0 + (bit & 3u)) + sk_slot_part(y, y0 + (bit >> 2 & 3u)) +
                             sk_slot_part(z, z0 + (bit >> 4));
         sk_take(out, slot, triangle, place);
@@ -211,7 +211,7 @@ SK_FUNCTION void sk_lay_out_block(sk_u32 b, sk_u32 alone, SetkaGridHeader grid, 
     sk_cell_list list;
     list.offset = block.clearance;
     for (sk_u64 rest = sk_mask_of(block); rest != 0u; rest &= rest - 1u) {
-        const sk_u32 bit = sk_bit_count((rest & (~rest + 1u)) - 1u);
+        const sk_u32 bit = sk_lowest_bit(rest);
         list.count = own[bit];
         own[bit] = list.offset;
         cells[r] = list;
