@@ -4,6 +4,7 @@
 #pragma once
 
 #include <atomic>
+#include <concepts>
 #include <cstdint>
 #include <memory>
 #include <stop_token>
@@ -77,7 +78,9 @@ class Queue {
     virtual void finish() = 0;
     /// Launches from here on count towards this stage of the timing table.
     virtual void begin_stage(std::string_view stage) = 0;
+    /// Launches are timed from the first call on until stop_timings(), and not before: see setka::Queue.
     [[nodiscard]] virtual std::vector<StageTime> take_timings() = 0;
+    virtual void stop_timings() = 0;
 
     // A backend may answer scan and sort with a well-kept library (PrimitiveShape::Library); the results have one right answer.
     // One without a library never resolves its options to that shape, and these are not called.
@@ -94,8 +97,12 @@ class Queue {
 
     void set_stop_token(std::stop_token token) noexcept { stop_token_ = std::move(token); }
     [[nodiscard]] const std::stop_token& stop_token() const noexcept { return stop_token_; }
-    /// Throws Cancelled if a stop was requested; `next` says what is not done any more.
+    /// Throws Cancelled if a stop was requested; `next` says what is not done any more, or makes a sentence of it when that is needed.
     void check_stop(std::string_view next) const;
+    template <std::invocable What>
+    void check_stop(const What& next) const {
+        if (stop_token_.stop_requested()) check_stop(std::string(next()));
+    }
     /// Waits for what was enqueued if a stop can be requested, so that no more than one launch lies between request and answer.
     void wait_if_stoppable() {
         if (stop_token_.stop_possible()) finish();

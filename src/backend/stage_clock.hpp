@@ -26,6 +26,11 @@ class StageClock {
         if (it == stages_.end()) stages_.push_back({std::string(stage), 0, 0});
     }
 
+    /// Whether spans are wanted: what measures them costs time itself.
+    [[nodiscard]] bool is_running() const noexcept { return is_running_; }
+    void start() noexcept { is_running_ = true; }
+    void stop() noexcept { is_running_ = false; }
+
     void add(Span span) { pending_.push_back({stage_, std::move(span)}); }
     /// Whether it is time to collect, so that a long run does not gather events without end.
     [[nodiscard]] bool is_full() const noexcept { return pending_.size() >= max_pending; }
@@ -80,6 +85,7 @@ class StageClock {
     std::vector<StageTime> stages_{{"other", 0, 0}};
     std::size_t stage_ = 0;
     std::vector<Pending> pending_;
+    bool is_running_ = false;
 };
 
 }  // namespace setka::backend

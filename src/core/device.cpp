@@ -143,14 +143,14 @@ std::shared_ptr<backend::Memory> Queue::allocate(std::size_t size, std::size_t e
     if (size > std::numeric_limits<std::size_t>::max() / element_bytes)
         throw Error(ErrorCategory::OutOfMemory, "buffer '" + std::string(name) + "' has " + std::to_string(size) +
                                                     " elements, more bytes than can be counted");
-    impl_->check_stop("allocating '" + std::string(name) + "'");
+    impl_->check_stop([&] { return "allocating '" + std::string(name) + "'"; });
     return impl_->allocate(size * element_bytes, name);
 }
 
 std::shared_ptr<backend::Memory> Queue::wrap_host(void* data, std::size_t size, std::size_t element_bytes,
                                                   bool read_only, std::string_view name) {
     if (size == 0) return nullptr;
-    impl_->check_stop("wrapping '" + std::string(name) + "'");
+    impl_->check_stop([&] { return "wrapping '" + std::string(name) + "'"; });
     if (auto memory = impl_->wrap_host(data, size * element_bytes, read_only, name)) return memory;
     auto memory = allocate(size, element_bytes, name);
     impl_->write(*memory, 0, data, size * element_bytes);
@@ -160,20 +160,20 @@ std::shared_ptr<backend::Memory> Queue::wrap_host(void* data, std::size_t size, 
 void Queue::write(const std::shared_ptr<backend::Memory>& target, std::size_t at, const void* source,
                   std::size_t size_bytes) {
     if (size_bytes == 0) return;
-    impl_->check_stop("writing '" + target->name() + "'");
+    impl_->check_stop([&] { return "writing '" + target->name() + "'"; });
     impl_->write(*target, at, source, size_bytes);
 }
 
 void Queue::read(const std::shared_ptr<backend::Memory>& source, void* target, std::size_t size_bytes) {
     if (size_bytes == 0) return;
-    impl_->check_stop("reading '" + source->name() + "'");
+    impl_->check_stop([&] { return "reading '" + source->name() + "'"; });
     impl_->read(*source, target, size_bytes);
 }
 
 std::shared_ptr<backend::PendingRead> Queue::read_later(const std::shared_ptr<backend::Memory>& source, void* target,
                                                         std::size_t size_bytes) {
     if (size_bytes == 0) return nullptr;
-    impl_->check_stop("reading '" + source->name() + "'");
+    impl_->check_stop([&] { return "reading '" + source->name() + "'"; });
     return impl_->read_later(*source, target, size_bytes);
 }
 
@@ -193,7 +193,7 @@ void detail::take_once(bool& is_there, const char* what) {
 void Queue::copy_bytes(const std::shared_ptr<backend::Memory>& source, std::size_t source_at,
                        const std::shared_ptr<backend::Memory>& target, std::size_t target_at, std::size_t size_bytes) {
     if (size_bytes == 0) return;
-    impl_->check_stop("copying '" + source->name() + "'");
+    impl_->check_stop([&] { return "copying '" + source->name() + "'"; });
     impl_->copy(*source, source_at, *target, target_at, size_bytes);
 }
 
@@ -209,5 +209,6 @@ void Queue::set_stop_token(std::stop_token token) { impl_->set_stop_token(std::m
 std::stop_token Queue::stop_token() const { return impl_->stop_token(); }
 void Queue::finish() { impl_->finish(); }
 std::vector<StageTime> Queue::take_timings() { return impl_->take_timings(); }
+void Queue::stop_timings() { impl_->stop_timings(); }
 
 }  // namespace setka

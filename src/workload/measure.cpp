@@ -13,7 +13,6 @@ Measurement measure(Queue& queue, std::uint32_t repeats, const std::function<voi
     const auto make_ready = [&] {
         if (prepare) prepare();
         queue.finish();
-        (void)queue.take_timings();
     };
     if (repeats > 1) {
         make_ready();
@@ -21,17 +20,30 @@ Measurement measure(Queue& queue, std::uint32_t repeats, const std::function<voi
     }
 
     std::vector<double> wall_ms, device_ms;
-    std::vector<std::vector<StageTime>> runs;
-    for (std::uint32_t i = 0; i < repeats; ++i) {
-        make_ready();
+    const auto time_wall = [&] {
         const Stopwatch watch;
         work();
         queue.finish();
         wall_ms.push_back(watch.elapsed_ms());
+    };
+    queue.stop_timings();
+    for (std::uint32_t i = 0; i < repeats && repeats > 1; ++i) {
+        make_ready();
+        time_wall();
+    }
+
+    std::vector<std::vector<StageTime>> runs;
+    const std::uint32_t recorded = std::min(repeats, std::max(3u, repeats / 4));
+    for (std::uint32_t i = 0; i < recorded; ++i) {
+        make_ready();
+        (void)queue.take_timings();
+        if (repeats == 1) time_wall();
+        else work();
         runs.push_back(queue.take_timings());
         const auto add = [](double sum, const StageTime& stage) { return sum + stage.time_ms; };
         device_ms.push_back(std::accumulate(runs.back().begin(), runs.back().end(), 0.0, add));
     }
+    queue.stop_timings();
 
     Measurement result{repeats, median(wall_ms), median(device_ms), runs.front(), quartile_distance(wall_ms),
                        quartile_distance(device_ms)};

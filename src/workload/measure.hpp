@@ -25,14 +25,15 @@ class Stopwatch {
 struct Measurement {
     std::uint32_t repeats = 0;
     double wall_ms = 0;
-    double device_ms = 0;           ///< sum over all stages
+    double device_ms = 0;           ///< sum over all stages, of runs that are recorded
     std::vector<StageTime> stages;  ///< in order of first use
     double wall_spread_ms = 0;      ///< between the quartiles: half of the repeats lie in a range this wide
     double device_spread_ms = 0;
 };
 
 /// Runs `work` on the queue `repeats` times and waits after each. If more than once, a first run warms up and
-/// does not count. `prepare` runs before each and is not measured: for work that destroys its input.
+/// does not count, and device times come from further runs, a quarter as many and three at least, since to record them takes time.
+/// `prepare` runs before each and is not measured: for work that destroys its input.
 [[nodiscard]] Measurement measure(Queue& queue, std::uint32_t repeats, const std::function<void()>& work,
                                   const std::function<void()>& prepare = {});
 

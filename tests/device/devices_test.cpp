@@ -109,4 +109,30 @@ TEST_P(DeviceOpen, TimingsNameTheStages) {
     EXPECT_TRUE(queue.take_timings().empty()) << "taking them starts anew";
 }
 
+TEST_P(DeviceOpen, TimesAreRecordedFromTheFirstCallOnUntilStopped) {
+    setka::Queue queue = device().make_queue();
+    const std::vector<std::uint32_t> counts(1000, 1);
+    const auto input = queue.upload(std::span(counts), "counts");
+    const auto output = queue.make_buffer<std::uint32_t>(counts.size() + 1, "offsets");
+    const auto scan = [&] { EXPECT_EQ(setka::exclusive_scan(queue, input, 1000, output), 1000u); };
+    queue.stop_timings();
+    for (int round = 0; round < 2; ++round) {
+        scan();
+        EXPECT_TRUE(queue.take_timings().empty()) << "nobody had asked for times in round " << round;
+        scan();
+        EXPECT_FALSE(queue.take_timings().empty()) << round;
+        scan();
+        queue.stop_timings();
+        queue.stop_timings();
+    }
+    // What was under way when the times began or ended arrives.
+    auto before = queue.download_later(output);
+    (void)queue.take_timings();
+    auto between = queue.download_later(output);
+    queue.stop_timings();
+    EXPECT_EQ(before.get().back(), 1000u);
+    EXPECT_EQ(between.get().back(), 1000u);
+    scan();
+}
+
 }  // namespace

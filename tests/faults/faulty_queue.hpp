@@ -88,6 +88,10 @@ class FaultyQueue final : public setka::backend::Queue, public std::enable_share
         ++waits_;
         return real_->take_timings();
     }
+    void stop_timings() override {
+        ++waits_;
+        real_->stop_timings();
+    }
     [[nodiscard]] std::uint64_t library_scan_bytes(std::uint32_t n) override {
         return real_->library_scan_bytes(n);
     }

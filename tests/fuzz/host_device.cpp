@@ -142,6 +142,7 @@ class HostQueue final : public setka::backend::Queue {
     void finish() override {}
     void begin_stage(std::string_view) override {}
     std::vector<setka::StageTime> take_timings() override { return {}; }
+    void stop_timings() override {}
 
   private:
     std::shared_ptr<setka::backend::Device> device_;

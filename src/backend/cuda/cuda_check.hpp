@@ -4,6 +4,7 @@
 
 #include <cuda_runtime_api.h>
 
+#include <concepts>
 #include <string>
 
 #include "setka/error.hpp"
@@ -24,6 +25,11 @@ namespace setka::backend {
 
 /// Throws cuda_error() if `code` is a failure. Clears errors that do not stick.
 void check(cudaError_t code, const std::string& what);
+/// The same, with a sentence that is made only when it is needed: a launch takes as long as a few sentences.
+template <std::invocable What>
+void check(cudaError_t code, const What& what) {
+    if (code != cudaSuccess) check(code, std::string(what()));
+}
 
 /// For destructors: logs a failure and goes on. A lost context fails each of them, and is logged once.
 void check_noexcept(cudaError_t code, const char* what) noexcept;

@@ -122,10 +122,12 @@ CudaQueue::~CudaQueue() {
     check_noexcept(cudaStreamSynchronize(stream_.get()), "cudaStreamSynchronize");
 }
 
-void CudaQueue::select() const { check(cudaSetDevice(device_->number()), "selecting " + device_->info().id); }
+void CudaQueue::select() const {
+    check(cudaSetDevice(device_->number()), [&] { return "selecting " + device_->info().id; });
+}
 
 std::shared_ptr<Memory> CudaQueue::allocate(std::uint64_t size_bytes, std::string_view name) {
-    const std::string what = "allocating '" + std::string(name) + "' (" + std::to_string(size_bytes) + " bytes)";
+    const auto what = [&] { return "allocating '" + std::string(name) + "' (" + std::to_string(size_bytes) + " bytes)"; };
     return allocate_pooled<CudaMemory>(device_, pool_, size_bytes, name, [&](std::uint64_t pooled_bytes) {
         select();
         void* pointer = nullptr;
@@ -137,7 +139,7 @@ std::shared_ptr<Memory> CudaQueue::allocate(std::uint64_t size_bytes, std::strin
 std::shared_ptr<Memory> CudaQueue::wrap_host(void*, std::uint64_t, bool, std::string_view) { return nullptr; }
 
 void CudaQueue::launch(Kernel kernel, std::uint32_t group_count, std::uint32_t group_size, const Arguments& arguments) {
-    const std::string what = std::string("launching ") + to_string(kernel);
+    const auto what = [&] { return std::string("launching ") + to_string(kernel); };
     std::array<void*, Arguments::max_count> buffers{};
     std::array<void*, Arguments::max_count> pointers{};
     for (std::size_t i = 0; i < arguments.size(); ++i) {
@@ -153,7 +155,7 @@ void CudaQueue::launch(Kernel kernel, std::uint32_t group_count, std::uint32_t g
         return cudaLaunchKernel(cuda_kernel(kernel), dim3(group_count), dim3(group_size), pointers.data(), 0,
                                 stream_.get());
     });
-    if (settings().log_launch) log_line(what + ", " + std::to_string(group_count) + " x " + std::to_string(group_size));
+    if (settings().log_launch) log_line(what() + ", " + std::to_string(group_count) + " x " + std::to_string(group_size));
 }
 
 void CudaQueue::write(Memory& target, std::uint64_t at, const void* source, std::uint64_t size_bytes) {
@@ -207,12 +209,12 @@ void CudaQueue::copy(Memory& source, std::uint64_t source_at, Memory& target, st
     select();
     check(cudaMemcpyAsync(pointer_as<std::byte>(target) + target_at, pointer_as<std::byte>(source) + source_at, size_bytes,
                           cudaMemcpyDeviceToDevice, stream_.get()),
-          "copying '" + source.name() + "' to '" + target.name() + "'");
+          [&] { return "copying '" + source.name() + "' to '" + target.name() + "'"; });
 }
 
 void CudaQueue::fill(Memory& target, std::uint32_t pattern, std::uint64_t size_bytes) {
     select();
-    const std::string what = "filling '" + target.name() + "'";
+    const auto what = [&] { return "filling '" + target.name() + "'"; };
     // cudaMemset repeats a byte; words go through pinned memory unless all their bytes are equal.
     if (pattern == (pattern & 0xffu) * 0x01010101u) {
         check(cudaMemsetAsync(pointer_of(target), static_cast<int>(pattern & 0xffu), size_bytes, stream_.get()), what);
@@ -224,12 +226,19 @@ void CudaQueue::fill(Memory& target, std::uint32_t pattern, std::uint64_t size_b
 
 void CudaQueue::finish() {
     select();
-    check(cudaStreamSynchronize(stream_.get()), "waiting for " + device_->info().id);
+    check(cudaStreamSynchronize(stream_.get()), [&] { return "waiting for " + device_->info().id; });
 }
 
 std::vector<StageTime> CudaQueue::take_timings() {
     collect_events();
+    clock_.start();
     return clock_.take_timings();
+}
+
+void CudaQueue::stop_timings() {
+    if (!clock_.is_running()) return;
+    (void)take_timings();
+    clock_.stop();
 }
 
 void CudaQueue::collect_events() {
@@ -256,14 +265,21 @@ CudaEvent CudaQueue::take_event() {
     return CudaEvent(event);
 }
 
-template <typename Enqueue>
-void CudaQueue::timed(const std::string& what, Enqueue enqueue) {
+template <typename What, typename Enqueue>
+void CudaQueue::timed(const What& what, Enqueue enqueue) {
     select();
-    Span span{take_event(), take_event()};
-    check(cudaEventRecord(span.start.get(), stream_.get()), "recording an event");
-    check(enqueue(), what);
-    check(cudaEventRecord(span.end.get(), stream_.get()), "recording an event");
-    clock_.add(std::move(span));
+    if (clock_.is_running()) {
+        const auto record = [&](const CudaEvent& event) {
+            check(cudaEventRecord(event.get(), stream_.get()), [] { return "recording an event"; });
+        };
+        Span span{take_event(), take_event()};
+        record(span.start);
+        check(enqueue(), what);
+        record(span.end);
+        clock_.add(std::move(span));
+    } else {
+        check(enqueue(), what);
+    }
     if (settings().synchronous) check(cudaStreamSynchronize(stream_.get()), what);
     if (clock_.is_full())
         clock_.collect_older([](Span& last) { check(cudaEventSynchronize(last.end.get()), "waiting for an event"); },
@@ -278,7 +294,7 @@ std::uint64_t CudaQueue::library_scan_bytes(std::uint32_t n) {
 }
 
 void CudaQueue::library_scan(Memory& counts, Memory& offsets, Memory& total, Memory& scratch, std::uint32_t n) {
-    timed("scanning with CUB", [&] {
+    timed([] { return "scanning with CUB"; }, [&] {
         return cub_scan(pointer_of(scratch), scratch.size_bytes(), pointer_as<std::uint32_t>(counts),
                         pointer_as<std::uint32_t>(offsets), pointer_as<std::uint64_t>(total), n, stream_.get());
     });
@@ -296,7 +312,7 @@ int CudaQueue::library_sort(const SortBuffers& buffers, std::uint32_t n, std::ui
     std::uint32_t* const values[2] = {pointer_as<std::uint32_t>(buffers.values),
                                       pointer_as<std::uint32_t>(buffers.other_values)};
     int selector = 0;
-    timed("sorting with CUB", [&] {
+    timed([] { return "sorting with CUB"; }, [&] {
         return cub_sort(pointer_of(buffers.scratch), buffers.scratch.size_bytes(), keys, values, n, key_bits,
                         stream_.get(), &selector);
     });

@@ -38,6 +38,7 @@ class CudaQueue final : public Queue {
     void finish() override;
     void begin_stage(std::string_view stage) override { clock_.begin_stage(stage); }
     [[nodiscard]] std::vector<StageTime> take_timings() override;
+    void stop_timings() override;
     [[nodiscard]] std::uint64_t library_scan_bytes(std::uint32_t n) override;
     void library_scan(Memory& counts, Memory& offsets, Memory& total, Memory& scratch, std::uint32_t n) override;
     [[nodiscard]] std::uint64_t library_sort_bytes(std::uint32_t n, std::uint32_t key_bits) override;
@@ -53,9 +54,9 @@ class CudaQueue final : public Queue {
     [[nodiscard]] CudaEvent take_event();
     /// Enqueues the copy of `source` from byte `at` on to pinned memory that `pending` empties.
     void read_piece(Memory& source, std::uint64_t at, std::uint64_t size_bytes, CudaPendingRead& pending);
-    /// Calls enqueue(), which returns a code, between two events that time it.
-    template <typename Enqueue>
-    void timed(const std::string& what, Enqueue enqueue);
+    /// Calls enqueue(), which returns a code, between two events that time it if times are wanted. what() says what that is.
+    template <typename What, typename Enqueue>
+    void timed(const What& what, Enqueue enqueue);
     void collect_events();
     /// Its time in milliseconds; its events serve again.
     [[nodiscard]] double time_of(Span& span);

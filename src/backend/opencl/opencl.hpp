@@ -8,6 +8,7 @@
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/opencl.hpp>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "setka/error.hpp"
@@ -20,13 +21,15 @@ namespace setka::backend {
 /// The Error for a failed call; `what` says what was being done.
 [[nodiscard]] Error opencl_error(const std::string& what, const cl::Error& error);
 
-/// Calls `action`; a failure of the driver becomes an Error that says what was being done.
-template <typename Action>
-decltype(auto) guarded(const std::string& what, Action&& action) {
+/// Calls `action`; a failure of the driver becomes an Error that says what was being done. `what` is the sentence, or makes it when it is
+/// needed: a launch takes as long as a few sentences.
+template <typename What, typename Action>
+decltype(auto) guarded(const What& what, Action&& action) {
     try {
         return std::forward<Action>(action)();
     } catch (const cl::Error& error) {
-        throw opencl_error(what, error);
+        if constexpr (std::is_invocable_v<const What&>) throw opencl_error(what(), error);
+        else throw opencl_error(what, error);
     }
 }
 

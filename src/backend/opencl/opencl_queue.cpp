@@ -79,7 +79,7 @@ class OpenClPendingRead final : public PendingRead {
 OpenClQueue::OpenClQueue(std::shared_ptr<OpenClDevice> device, std::shared_ptr<OpenClPool> pool)
     : device_(std::move(device)), pool_(std::move(pool)), staged_(staging_bytes) {
     guarded("making a queue on " + device_->info().id, [&] {
-        queue_ = cl::CommandQueue(device_->context(), device_->device(), CL_QUEUE_PROFILING_ENABLE);
+        queue_ = untimed_ = cl::CommandQueue(device_->context(), device_->device());
         for (const char* name : kernel_names) kernels_.emplace_back(device_->program(), name);
     });
 }
@@ -94,7 +94,7 @@ OpenClQueue::~OpenClQueue() {
 }
 
 std::shared_ptr<Memory> OpenClQueue::allocate(std::uint64_t size_bytes, std::string_view name) {
-    const std::string what = "allocating '" + std::string(name) + "' (" + std::to_string(size_bytes) + " bytes)";
+    const auto what = [&] { return "allocating '" + std::string(name) + "' (" + std::to_string(size_bytes) + " bytes)"; };
     return allocate_pooled<OpenClMemory>(device_, pool_, size_bytes, name, [&](std::uint64_t pooled_bytes) {
         return guarded(what, [&] { return cl::Buffer(device_->context(), CL_MEM_READ_WRITE, pooled_bytes); });
     });
@@ -105,7 +105,7 @@ std::shared_ptr<Memory> OpenClQueue::wrap_host(void* data, std::uint64_t size_by
     // A GPU beside the CPU wants pages and cache lines; elsewhere the driver would copy behind our back.
     const bool aligned = reinterpret_cast<std::uintptr_t>(data) % 4096 == 0 && size_bytes % 64 == 0;
     if (!device_->info().unified_memory || (device_->info().type != DeviceType::Cpu && !aligned)) return nullptr;
-    return guarded("wrapping '" + std::string(name) + "'", [&] {
+    return guarded([&] { return "wrapping '" + std::string(name) + "'"; }, [&] {
         const cl_mem_flags flags = CL_MEM_USE_HOST_PTR | (read_only ? CL_MEM_READ_ONLY : CL_MEM_READ_WRITE);
         auto memory = std::make_shared<OpenClMemory>(size_bytes, std::string(name));
         memory->buffer = cl::Buffer(device_->context(), flags, size_bytes, data);
@@ -116,13 +116,13 @@ std::shared_ptr<Memory> OpenClQueue::wrap_host(void* data, std::uint64_t size_by
 
 void OpenClQueue::launch(Kernel kernel, std::uint32_t group_count, std::uint32_t group_size,
                          const Arguments& arguments) {
-    const std::string what = std::string("launching ") + to_string(kernel);
+    const auto what = [&] { return std::string("launching ") + to_string(kernel); };
     cl::Kernel& object = kernels_[static_cast<std::size_t>(kernel)];
     std::uint64_t parameter_bytes = 0;
     for (std::size_t i = 0; i < arguments.size(); ++i)
         parameter_bytes += arguments[i].value_bytes ? arguments[i].value_bytes : sizeof(cl_mem);
     if (parameter_bytes > device_->info().max_parameter_bytes)
-        throw Error(ErrorCategory::Unsupported, what + " needs " + std::to_string(parameter_bytes) +
+        throw Error(ErrorCategory::Unsupported, what() + " needs " + std::to_string(parameter_bytes) +
                                                     " bytes of arguments; " + device_->info().name + " allows " +
                                                     std::to_string(device_->info().max_parameter_bytes));
     guarded(what, [&] {
@@ -140,9 +140,9 @@ void OpenClQueue::launch(Kernel kernel, std::uint32_t group_count, std::uint32_t
         const cl::size_type global = cl::size_type(group_count) * group_size;
         is_idle_ = false;
         queue_.enqueueNDRangeKernel(object, cl::NullRange, cl::NDRange(global), cl::NDRange(group_size), nullptr,
-                                    &event);
-        clock_.add(std::move(event));
-        if (settings().log_launch) log_line(what + ", " + std::to_string(group_count) + " x " + std::to_string(group_size));
+                                    clock_.is_running() ? &event : nullptr);
+        if (clock_.is_running()) clock_.add(std::move(event));
+        if (settings().log_launch) log_line(what() + ", " + std::to_string(group_count) + " x " + std::to_string(group_size));
         if (settings().synchronous) queue_.finish();
         if (clock_.is_full()) clock_.collect_older([](const cl::Event& last) { last.wait(); }, time_of);
     });
@@ -160,7 +160,7 @@ void OpenClQueue::write(Memory& target, std::uint64_t at, const void* source, st
     // Where there is nothing to wait for, waiting is cheaper than a copy; and a checker may take memory for unused too early.
     if (!is_idle_ && size_bytes <= largest_staged_bytes && settings().pooling)
         return write_staged(target, at, source, size_bytes);
-    guarded("writing '" + target.name() + "'", [&] {
+    guarded([&] { return "writing '" + target.name() + "'"; }, [&] {
         queue_.enqueueWriteBuffer(as_opencl(target).buffer, CL_TRUE, at, size_bytes, source);
     });
     note_idle();
@@ -168,7 +168,7 @@ void OpenClQueue::write(Memory& target, std::uint64_t at, const void* source, st
 
 void OpenClQueue::write_staged(Memory& target, std::uint64_t at, const void* source, std::uint64_t size_bytes) {
     if (!staging_) staging_ = std::make_unique_for_overwrite<std::byte[]>(staging_bytes);
-    guarded("writing '" + target.name() + "'", [&] {
+    guarded([&] { return "writing '" + target.name() + "'"; }, [&] {
         staged_.use(size_bytes, has_ended, [](const cl::Event& oldest) { oldest.wait(); }, [&](std::size_t place) {
             cl::Event event;
             std::memcpy(staging_.get() + place, source, size_bytes);
@@ -180,17 +180,17 @@ void OpenClQueue::write_staged(Memory& target, std::uint64_t at, const void* sou
 }
 
 void OpenClQueue::read(Memory& source, void* target, std::uint64_t size_bytes) {
+    const auto what = [&] { return "reading '" + source.name() + "'"; };
     OpenClMemory& memory = as_opencl(source);
     if (memory.host == target) {
-        guarded("reading '" + source.name() + "'", [&] {
+        guarded(what, [&] {
             void* mapped = queue_.enqueueMapBuffer(memory.buffer, CL_TRUE, CL_MAP_READ, 0, size_bytes);
             queue_.enqueueUnmapMemObject(memory.buffer, mapped);
             queue_.finish();
         });
     } else {
         // NVIDIA's driver takes longer to read without blocking and to wait for that.
-        guarded("reading '" + source.name() + "'",
-                [&] { queue_.enqueueReadBuffer(memory.buffer, CL_TRUE, 0, size_bytes, target); });
+        guarded(what, [&] { queue_.enqueueReadBuffer(memory.buffer, CL_TRUE, 0, size_bytes, target); });
     }
     note_idle();
 }
@@ -208,7 +208,7 @@ std::unique_ptr<PendingRead> OpenClQueue::read_later(Memory& source, void* targe
 void OpenClQueue::copy(Memory& source, std::uint64_t source_at, Memory& target, std::uint64_t target_at,
                        std::uint64_t size_bytes) {
     is_idle_ = false;
-    guarded("copying '" + source.name() + "' to '" + target.name() + "'", [&] {
+    guarded([&] { return "copying '" + source.name() + "' to '" + target.name() + "'"; }, [&] {
         queue_.enqueueCopyBuffer(as_opencl(source).buffer, as_opencl(target).buffer, source_at, target_at, size_bytes);
     });
 }
@@ -220,13 +220,13 @@ void OpenClQueue::fill(Memory& target, std::uint32_t pattern, std::uint64_t size
         return write(target, 0, words.data(), size_bytes);
     }
     is_idle_ = false;
-    guarded("filling '" + target.name() + "'", [&] {
+    guarded([&] { return "filling '" + target.name() + "'"; }, [&] {
         queue_.enqueueFillBuffer(as_opencl(target).buffer, pattern, 0, size_bytes);
     });
 }
 
 void OpenClQueue::finish() {
-    guarded("waiting for " + device_->info().id, [&] { queue_.finish(); });
+    guarded([&] { return "waiting for " + device_->info().id; }, [&] { queue_.finish(); });
     note_idle();
 }
 
@@ -235,7 +235,7 @@ void OpenClQueue::note_idle() {
     std::optional<Error> first;
     for (bool is_over = false; !is_over;) {
         try {
-            guarded("writing to " + device_->info().id, [&] { staged_.retire(has_ended); });
+            guarded([&] { return "writing to " + device_->info().id; }, [&] { staged_.retire(has_ended); });
             is_over = true;
         } catch (const Error& error) {  // and that place is forgotten
             if (!first) first = error;
@@ -245,8 +245,21 @@ void OpenClQueue::note_idle() {
 }
 
 std::vector<StageTime> OpenClQueue::take_timings() {
-    collect_events();
+    collect_events();  // and nothing is left to do, so that another command queue may go on
+    if (!timed_())
+        timed_ = guarded([&] { return "making a queue on " + device_->info().id; }, [&] {
+            return cl::CommandQueue(device_->context(), device_->device(), CL_QUEUE_PROFILING_ENABLE);
+        });
+    queue_ = timed_;
+    clock_.start();
     return clock_.take_timings();
+}
+
+void OpenClQueue::stop_timings() {
+    if (!clock_.is_running()) return;
+    (void)take_timings();
+    queue_ = untimed_;
+    clock_.stop();
 }
 
 void OpenClQueue::collect_events() {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// What does a queue mean in OpenCL? An in-order command queue with profiling, its kernel objects, its pool of buffers, and host memory for
-/// writes that are on their way.
+/// What does a queue mean in OpenCL? An in-order command queue, or another one with profiling when times are wanted, its kernel objects, its pool
+/// of buffers, and host memory for writes that are on their way.
 #pragma once
 
 #include <memory>
@@ -33,6 +33,7 @@ class OpenClQueue final : public Queue {
     void finish() override;
     void begin_stage(std::string_view stage) override { clock_.begin_stage(stage); }
     [[nodiscard]] std::vector<StageTime> take_timings() override;
+    void stop_timings() override;
 
   private:
     void collect_events();
@@ -42,7 +43,8 @@ class OpenClQueue final : public Queue {
 
     std::shared_ptr<OpenClDevice> device_;
     std::shared_ptr<OpenClPool> pool_;
-    cl::CommandQueue queue_;
+    cl::CommandQueue untimed_, timed_;  ///< whether it profiles belongs to a command queue; the second is made when it is first needed
+    cl::CommandQueue queue_;            ///< where commands go: one of the two. The other has nothing to do
     std::vector<cl::Kernel> kernels_;
     StageClock<cl::Event> clock_;
     std::unique_ptr<std::byte[]> staging_;  ///< made when it is first needed
