@@ -36,7 +36,8 @@
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #endif
 
-#if SK_TEAM > 1
+/* NVIDIA's compiler takes no limit of registers for kernels that say how large their groups are (SK_LIMITED, opencl_device.cpp). */
+#if SK_TEAM > 1 && !defined(SK_LIMITED)
 #define SK_TEAM_KERNEL __kernel __attribute__((reqd_work_group_size(SK_TEAM, 1, 1)))
 #else
 #define SK_TEAM_KERNEL __kernel

@@ -98,9 +98,10 @@ void OpenClDevice::build_program() {
     build_options += " -DSK_WIDTH=" + std::to_string(width()) + "u";
     build_options += " -DSK_DOUBLE=" + std::to_string(int(has_doubles()));
     build_options += " -DSK_TEAM=" + std::to_string(team_size());
-    // As for CUDA: walks wait for memory, so that more of them at a time are worth more than registers.
+    // As for CUDA: walks wait for memory, so that more of them at a time are worth more than registers, and 28 teams of 72 run at a time on a
+    // multiprocessor. The limit is for kernels only that do not say how large their groups are.
     if (device_.getInfo<CL_DEVICE_EXTENSIONS>().find("cl_nv_compiler_options") != std::string::npos)
-        build_options += " -cl-nv-maxrregcount=64";
+        build_options += " -cl-nv-maxrregcount=72 -DSK_LIMITED";
     const auto build_log = [&]() -> std::string {
         try {
             return program_.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device_);
