@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /**
  * Entries that make the tables of blocks and cells, and the paper's tables from them; the bodies are in
- * src/device/grid/scatter.h, block_scan.h and exchange.h. One work-item a block unless the entry says otherwise.
+ * src/device/grid/scatter.h, block_scan.h, block_groups.h and exchange.h. One work-item a block unless the entry says otherwise.
  */
 #include "platform.h"
 
+#include "device/grid/block_groups.h"
 #include "device/grid/block_scan.h"
 #include "device/grid/exchange.h"
 #include "device/grid/scatter.h"
@@ -40,7 +41,24 @@ SK_KERNEL void blocks_lay_out(sk_u32 n, sk_u32 alone, SetkaGridHeader grid, SK_G
                               SK_GLOBAL const sk_block* counted, SK_GLOBAL sk_block* blocks,
                               SK_GLOBAL sk_cell_list* cells, SK_GLOBAL sk_piece* pieces, SK_GLOBAL sk_u32* totals) {
     const sk_u32 b = sk_global_id();
-    if (b < n) sk_lay_out_block(b, alone, grid, counters, counted, blocks, cells, pieces, totals);
+    if (b < n) sk_lay_out_block(b, alone, grid, counters, counted[b], blocks, cells, pieces, totals);
+}
+
+/* Both at once with what lies between them, a work-item a block; n of the first may be more than the grid has. */
+SK_KERNEL void blocks_tally(sk_u32 n, sk_u32 alone, SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_block* blocks,
+                            SK_GLOBAL sk_u64* sums, SK_GLOBAL sk_u32* report) {
+    SK_LOCAL_STORAGE sk_u64 scratch[SK_MAX_GROUP];
+    SK_LOCAL_STORAGE sk_u64 pair_scratch[SK_MAX_GROUP];
+    sk_tally_blocks(scratch, pair_scratch, n, alone, sk_reported_grid(report), counters, blocks, sums, report);
+}
+
+SK_KERNEL void blocks_settle(sk_u32 n, sk_u32 alone, SetkaGridHeader grid, SK_GLOBAL sk_u32* counters,
+                             SK_GLOBAL const sk_block* counted, SK_GLOBAL const sk_u64* sums,
+                             SK_GLOBAL sk_block* blocks, SK_GLOBAL sk_cell_list* cells, SK_GLOBAL sk_piece* pieces,
+                             SK_GLOBAL sk_u32* totals) {
+    SK_LOCAL_STORAGE sk_u64 scratch[2 * SK_MAX_GROUP];
+    SK_LOCAL_STORAGE sk_u64 own_scratch[2 * SK_MAX_GROUP];
+    sk_settle_blocks(scratch, own_scratch, n, alone, grid, counters, counted, sums, blocks, cells, pieces, totals);
 }
 
 /* A work-item for each `run` triangles of the grid that the report names, elements first to n - 1. */

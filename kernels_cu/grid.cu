@@ -20,6 +20,15 @@ SK_KERNEL void grid_resolve(sk_u32 n, sk_u32 blocks, float density, sk_u32 max_c
         sk_grid_resolve(blocks, sk_make_cell_wish(density, max_cells, triangle_count, instance_count), report);
 }
 
+/* The same by the first work-item, while all n of them clear 4 n counters. */
+SK_KERNEL void grid_resolve_clear(sk_u32 n, sk_u32 blocks, float density, sk_u32 max_cells, sk_u32 triangle_count,
+                                  sk_u32 instance_count, SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_u32* report) {
+    const sk_u32 i = sk_global_id();
+    if (i < n) sk_clear_counters(i, n, counters);
+    if (i == 0u)
+        sk_grid_resolve(blocks, sk_make_cell_wish(density, max_cells, triangle_count, instance_count), report);
+}
+
 SK_KERNEL void grid_rows(sk_u32 n, SetkaGridHeader grid, SK_GLOBAL const float* triangles, SK_GLOBAL sk_u32* rows) {
     const sk_u32 i = sk_global_id();
     if (i < n) sk_grid_rows(i, grid, triangles, rows);

@@ -42,6 +42,22 @@ std::uint32_t triangles_an_item(const Device& device) {
     return device.options().primitives == PrimitiveShape::Serial ? 8 : 1;
 }
 
+/// The groups in which blocks are counted and laid out, a work-item each; 0 if there are too many, since each reads the sums of all before it:
+/// then a scan in launches of its own costs less. Where a work-item is a core's, it does.
+std::uint32_t block_groups(const Device& device, std::uint32_t blocks) {
+    constexpr std::uint32_t most = 2048;
+    const std::uint32_t size = device.options().work_group_size, groups = blocks / size + (blocks % size != 0);
+    return device.options().primitives == PrimitiveShape::Serial || groups > most ? 0 : groups;
+}
+
+std::uint64_t sums_bytes(const Device& device, std::uint32_t blocks) {
+    const std::uint32_t groups = block_groups(device, blocks);
+    return groups != 0 ? groups * std::uint64_t(sizeof(std::uint64_t)) : block_sums_bytes(device, blocks);
+}
+
+/// Whether the counters are cleared by the launch in which the first work-item finds the resolution, while the rest of a GPU has nothing else to do.
+bool clears_beside(const Device& device) { return device.options().primitives != PrimitiveShape::Serial; }
+
 /// Rows of large triangles that are provided for before any is seen: one a triangle, and those of some giants.
 std::uint32_t usual_rows(std::uint32_t triangles) { return triangles + 8192; }
 
@@ -59,19 +75,20 @@ CountRoom usual_room(std::uint32_t triangles, const GridOptions& options) {
     const double blocks = std::min(std::ceil((1.25 * cells + 20 * side * side + 4096) / SK_BLOCK_CELLS), most);
     if (blocks * SK_BLOCK_CELLS > double(most_entries)) return {};
     const auto whole = static_cast<std::uint32_t>(blocks);
-    return {usual_rows(triangles), whole, whole * std::uint64_t(SK_BLOCK_CELLS + 1)};  // a mark's word a block at most
+    const std::uint64_t counters = whole * std::uint64_t(SK_BLOCK_CELLS + 1);  // a mark's word a block at most
+    return {usual_rows(triangles), whole, (counters + 3) / 4 * 4};
 }
 
 /// The bytes that counting holds, world triangles not included.
 std::uint64_t count_bytes(const Device& device, std::uint32_t triangles, const CountRoom& room) {
     return report_bytes +
            (room.counters + room.blocks * block_words + triangles * reach_words + room.rows * row_words) * word +
-           block_sums_bytes(device, room.blocks);
+           sums_bytes(device, room.blocks);
 }
 
-/// Counts every triangle in its cells of the grid in the report, and the blocks' cells and pairs.
+/// Counts every triangle in its cells of the grid in the report, and the blocks' cells and pairs. `counters` are 0.
 ScatteredCount enqueue_count(Queue& queue, const WorldGeometry& geometry, const Buffer<std::uint32_t>& report,
-                             const CountRoom& room, std::uint64_t most_rows) {
+                             const CountRoom& room, Buffer<std::uint32_t> counters, std::uint64_t most_rows) {
     const std::uint32_t n = geometry.triangle_count, items = row_items(queue.device(), room.rows);
     ScatteredCount count;
     count.room = room;
@@ -80,13 +97,19 @@ ScatteredCount enqueue_count(Queue& queue, const WorldGeometry& geometry, const 
     count.blocks = queue.make_buffer<std::uint32_t>(room.blocks * block_words, "counted blocks");
     count.reaches = queue.make_buffer<std::uint32_t>(n * reach_words, "cells of small triangles");
     count.row_list = queue.make_buffer<std::uint32_t>(room.rows * row_words, "rows of large triangles");
-    count.counters = make_counters(queue, room.counters);
+    count.counters = std::move(counters);
     const std::uint32_t run = triangles_an_item(queue.device());
     launch_range(queue, Kernel::scatter_count, (n + run - 1) / run, triangles_a_launch(queue.device()) / run, run,
                  geometry.triangles, count.counters, count.reaches, room.rows, count.row_list, report);
     launch_range(queue, Kernel::scatter_count_rows, items, most_rows / 16, items, geometry.triangles, count.counters,
                  room.rows, count.row_list, report);
     queue.impl().begin_stage("blocks");
+    if (const std::uint32_t groups = block_groups(queue.device(), room.blocks); groups != 0) {
+        count.sums = queue.make_buffer<std::uint64_t>(groups, "sums of groups of blocks");
+        launch_items(queue, Kernel::blocks_tally, room.blocks, longest_alone(queue.device()), count.counters, count.blocks,
+                     count.sums, report);
+        return count;
+    }
     launch_items(queue, Kernel::blocks_count, room.blocks, longest_alone(queue.device()), count.counters,
                  count.blocks, report);
     count.sums = enqueue_block_sums(queue, count.blocks, report);
@@ -130,9 +153,17 @@ ScatteredCount start_count(Queue& queue, const StartedTransform& transform, cons
         nothing.report = transform.report;
         return nothing;
     }
-    launch_items(queue, Kernel::grid_resolve, 1, room.blocks, options.density, options.max_cells_per_axis, n,
-                 geometry.instance_count, transform.report);
-    return enqueue_count(queue, geometry, transform.report, room, most_entries);
+    Buffer<std::uint32_t> counters;
+    if (clears_beside(device)) {
+        counters = queue.make_buffer<std::uint32_t>(room.counters, "cell counters and marks");
+        launch_items(queue, Kernel::grid_resolve_clear, static_cast<std::uint32_t>(room.counters / 4), room.blocks,
+                     options.density, options.max_cells_per_axis, n, geometry.instance_count, counters, transform.report);
+    } else {
+        launch_items(queue, Kernel::grid_resolve, 1, room.blocks, options.density, options.max_cells_per_axis, n,
+                     geometry.instance_count, transform.report);
+        counters = make_counters(queue, room.counters);
+    }
+    return enqueue_count(queue, geometry, transform.report, room, std::move(counters), most_entries);
 }
 
 std::optional<ScatteredCount> finish_count(Queue& queue, const WorldGeometry& geometry, ::SetkaGridHeader& header,
@@ -151,7 +182,8 @@ std::optional<ScatteredCount> finish_count(Queue& queue, const WorldGeometry& ge
         const CountRoom room = room_of(header, rows);
         held_bytes = std::max(held_bytes, count_bytes(device, n, room));
         report_header(queue, report, header);
-        count = enqueue_count(queue, geometry, report, room, rows_a_launch(device, header.dims));
+        count = enqueue_count(queue, geometry, report, room, make_counters(queue, room.counters),
+                              rows_a_launch(device, header.dims));
         totals = totals_of(read_report(queue, report));
     };
     if (count.room.blocks != 0) held_bytes = count_bytes(device, n, count.room);
@@ -197,12 +229,17 @@ CompactTables build_scattered(Queue& queue, const WorldGeometry& geometry, const
     CompactTables tables;
     queue.impl().begin_stage("blocks");
     tables.cells = queue.make_buffer<std::uint32_t>(count.cells * cell_words, "cells");
-    enqueue_block_starts(queue, count.sums, count.blocks);
     const std::uint32_t alone = longest_alone(queue.device());
+    const bool is_tallied = block_groups(queue.device(), count.room.blocks) != 0;
+    if (!is_tallied) enqueue_block_starts(queue, count.sums, count.blocks);
     tables.blocks = queue.make_buffer<std::uint32_t>(block_count(header) * block_words, "blocks");
     const auto pieces = queue.make_buffer<std::uint32_t>(count.pieces * piece_words, "pieces of lists");
-    launch_items(queue, Kernel::blocks_lay_out, block_count(header), alone, header, count.counters, count.blocks,
-                 tables.blocks, tables.cells, pieces, count.report);
+    if (is_tallied)
+        launch_items(queue, Kernel::blocks_settle, block_count(header), alone, header, count.counters, count.blocks,
+                     count.sums, tables.blocks, tables.cells, pieces, count.report);
+    else
+        launch_items(queue, Kernel::blocks_lay_out, block_count(header), alone, header, count.counters, count.blocks,
+                     tables.blocks, tables.cells, pieces, count.report);
     queue.impl().begin_stage("place");
     tables.references = queue.make_buffer<std::uint32_t>(header.reference_count, "references");
     launch_range(queue, Kernel::scatter_place, header.triangle_count, triangles_a_launch(queue.device()), header,

@@ -9,10 +9,12 @@
     X(probe_rounding) X(probe_layout) X(probe_barrier)                                                     \
     X(scan_reduce) X(scan_spine) X(scan_apply)                                                             \
     X(sort_count) X(sort_scatter)                                                                          \
-    X(grid_transform) X(grid_resolve) X(grid_rows) X(grid_row_list) X(grid_count) X(grid_emit)             \
+    X(grid_transform) X(grid_resolve) X(grid_resolve_clear)                                                \
+    X(grid_rows) X(grid_row_list) X(grid_count) X(grid_emit)                                               \
     X(grid_cells_clear) X(grid_cells_mark) X(grid_cells_close) X(grid_cells_search)                        \
     X(grid_mark)                                                                                           \
     X(blocks_reduce) X(blocks_spine) X(blocks_apply) X(blocks_count) X(blocks_lay_out)                     \
+    X(blocks_tally) X(blocks_settle)                                                                       \
     X(scatter_count) X(scatter_count_rows) X(scatter_place) X(scatter_place_rows) X(lists_sort)            \
     X(lists_rank) X(lists_merge)                                                                           \
     X(bins_count) X(bins_sum) X(bins_start) X(bins_fill) X(bins_tally) X(bins_place)                       \

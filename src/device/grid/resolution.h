@@ -167,4 +167,9 @@ SK_FUNCTION void sk_grid_resolve(sk_u32 blocks, sk_cell_wish wish, SK_GLOBAL sk_
 #endif
 }
 
+/** Four of 4 n counters become 0, those of n work-items side by side each time. */
+SK_FUNCTION void sk_clear_counters(sk_u32 i, sk_u32 n, SK_GLOBAL sk_u32* counters) {
+    for (sk_u32 k = 0u; k < 4u; ++k) counters[(size_t)k * n + i] = 0u;
+}
+
 #endif

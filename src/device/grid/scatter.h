@@ -197,16 +197,14 @@ SK_FUNCTION void sk_cut_list(sk_cell_list list, SK_GLOBAL sk_piece* pieces, SK_G
 }
 
 /**
- * The record of block b and those of its cells, from what was counted and scanned; the counters become the first places of the lists. Empty
- * blocks learn their clearance.
+ * The record of block b and those of its cells, from what was counted and scanned (`block`); the counters become the first places of the lists.
+ * Empty blocks learn their clearance.
  */
 SK_FUNCTION void sk_lay_out_block(sk_u32 b, sk_u32 alone, SetkaGridHeader grid, SK_GLOBAL sk_u32* counters,
-                                  SK_GLOBAL const sk_block* counted, SK_GLOBAL sk_block* blocks,
-                                  SK_GLOBAL sk_cell_list* cells, SK_GLOBAL sk_piece* pieces,
-                                  SK_GLOBAL sk_u32* totals) {
+                                  sk_block block, SK_GLOBAL sk_block* blocks, SK_GLOBAL sk_cell_list* cells,
+                                  SK_GLOBAL sk_piece* pieces, SK_GLOBAL sk_u32* totals) {
     const sk_dims dims = sk_block_dims(sk_cell_dims(grid));
     SK_GLOBAL sk_u32* own = counters + (size_t)b * SK_BLOCK_CELLS;
-    sk_block block = counted[b];
     sk_u32 r = block.first;
     sk_cell_list list;
     list.offset = block.clearance;
