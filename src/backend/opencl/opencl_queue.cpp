@@ -26,6 +26,8 @@ OpenClMemory& as_opencl(Memory& memory) { return static_cast<OpenClMemory&>(memo
 constexpr std::size_t staging_bytes = std::size_t(32) << 20;
 constexpr std::size_t largest_staged_bytes = std::size_t(8) << 20;
 
+constexpr std::byte few_zeros[1024]{};
+
 /// Whether a write has ended. Throws if it failed: always DeviceFailed, since whoever asked for it has gone on, and nobody who has
 /// less to do next time makes up for it.
 bool has_ended(const cl::Event& event) {
@@ -221,7 +223,11 @@ void OpenClQueue::fill(Memory& target, std::uint32_t pattern, std::uint64_t size
     }
     is_idle_ = false;
     guarded([&] { return "filling '" + target.name() + "'"; }, [&] {
-        queue_.enqueueFillBuffer(as_opencl(target).buffer, pattern, 0, size_bytes);
+        // A few bytes are part of the command that writes them: NVIDIA's driver takes half as long to enqueue it.
+        if (pattern == 0 && size_bytes <= sizeof few_zeros)
+            queue_.enqueueWriteBuffer(as_opencl(target).buffer, CL_FALSE, 0, size_bytes, few_zeros);
+        else
+            queue_.enqueueFillBuffer(as_opencl(target).buffer, pattern, 0, size_bytes);
     });
 }
 
