@@ -25,20 +25,22 @@ std::uint32_t bin_count(const ::SetkaGridHeader& header) noexcept {
 }
 
 /// Pairs that are provided for before any is seen, by density: triangles of closed surfaces reach into 1.8 (spheres) to 3.5 cells (terrain,
-/// scans) each at 8, and into as many more as cells have sides.
+/// scans) each at 8, coarse ones into 5 to 6, and into as many more as cells have sides.
 std::uint64_t usual_pairs(std::uint32_t triangles, float density) {
     const double side = exact::root(double(density), 3) / 2;
-    return static_cast<std::uint64_t>(std::ceil(double(triangles) * (1 + 4 * side * side))) + 65536;
+    return static_cast<std::uint64_t>(std::ceil(double(triangles) * (2 + 4 * side * side))) + 8192;
 }
 
-/// Runs long enough to be worth their counters, and so many that cores come out even; a work-item takes a sixteenth of what a core does.
+/// Runs long enough to be worth their counters, and so many that cores come out even; a work-item takes a sixteenth of what a core does, with
+/// counters that stay in its cache. Other devices may end a long loop early, or have very many work-items: there bins and short runs have one each.
 BinRoom divided(const Device& device, std::uint32_t triangles, BinRoom room) {
-    constexpr std::uint32_t shortest = 2048, most_counters = 1u << 24;
+    constexpr std::uint32_t shortest = 2048, most_counters = 1u << 24, most_items = 256;
     const std::uint32_t shares = 16 * std::max(1u, device.info().compute_units);
-    const std::uint64_t most_runs = std::clamp<std::uint64_t>(most_counters / room.bins, 1, std::max(64u, shares));
+    const std::uint64_t runs = prefers_bins(device) ? std::max(64u, shares) : divide_up(triangles, shortest);
+    const std::uint64_t most_runs = std::clamp<std::uint64_t>(most_counters / room.bins, 1, runs);
     room.run = static_cast<std::uint32_t>(std::max<std::uint64_t>(shortest, divide_up(triangles, most_runs)));
     room.runs = static_cast<std::uint32_t>(divide_up(triangles, room.run));
-    room.items = std::min(room.bins, shares);
+    room.items = prefers_bins(device) ? std::min({room.bins, shares, most_items}) : room.bins;
     return room;
 }
 

@@ -37,7 +37,7 @@ endif()
 string(JSON count LENGTH "${json}" benchmarks)
 math(EXPR last "${count} - 1")
 set(common wall_ms wall_spread_ms device_ms device_spread_ms repeats bytes_moved GB/s peak_scratch_bytes)
-set(stages transform count blocks place sort)
+set(stages transform count blocks)  # then place and sort, or bins and lists
 list(TRANSFORM stages PREPEND stage_)
 list(TRANSFORM stages APPEND _ms)
 set(of_memory triangles table_bytes table_bytes_per_triangle peak_scratch_bytes peak_scratch_bytes_per_triangle)

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "accel/binned_lists.hpp"
 #include "accel/compact_tables.hpp"
 #include "backend/device.hpp"
 #include "faults/faulty_queue.hpp"
@@ -100,8 +101,10 @@ TEST_P(Waits, OnceForOrdinaryScenes) {
 TEST_P(Waits, RoomIsSomeThirtyPercentAtMost) {
     if (support::has_small_sizes())
         GTEST_SKIP() << "SETKA_TEST_SIZE=small: sides are a large part of small scenes";
-    // Pairs in bins take 6 bytes, and room for 5 a triangle; spheres have 1.8, and hold least of all else.
-    for (const auto& [tables, most] : {std::pair(CellTables::Scatter, 1.3), std::pair(CellTables::Bins, 1.5)})
+    // Pairs in bins take 6 bytes, and room for 6 a triangle; spheres have 1.8, and hold least of all else. Where bins are not what a device
+    // makes by itself, each has counters of its own.
+    for (const auto& [tables, most] : {std::pair(CellTables::Scatter, 1.3), std::pair(CellTables::Bins, 1.5)}) {
+        if (tables == CellTables::Bins && !setka::prefers_bins(device())) continue;
         for (const std::string name : {"terrain", "spheres", "soup"}) {
             SCOPED_TRACE(name + ", " + to_string(tables));
             const setka::Scene scene = setka::make_scene(name, 100000);
@@ -113,6 +116,7 @@ TEST_P(Waits, RoomIsSomeThirtyPercentAtMost) {
             EXPECT_GT(roomy, exact);
             EXPECT_LT(double(roomy), most * double(exact));
         }
+    }
 }
 
 TEST_P(Waits, TwiceForSheetsOfWhichBlocksAreThickerThanCells) {

@@ -10,7 +10,7 @@
 
 #include "device/grid/reach.h"
 #if SK_WIDTH > 1
-#include "device/grid/reach_lanes.h"
+#include "device/grid/rows_lanes.h"
 #endif
 
 #if SK_WIDTH == 1
@@ -86,32 +86,70 @@ SK_FUNCTION void sk_hand_over_mask(sk_run_of_triangles run, sk_reach reach, sk_u
     }
 }
 
-/** The pairs of row j of a triangle that has none; how many these are. Cells of a column follow each other in one bin after the other. */
-SK_FUNCTION sk_u32 sk_hand_over_row(sk_run_of_triangles run, SetkaGridHeader grid, sk_cell_triangle t, sk_u32 j,
-                                    sk_u32 triangle, const int put) {
-    const sk_row row = sk_enter_row(grid, t, j);
+/** The pairs of column i of row j; how many these are. They follow each other in one bin after the other. */
+SK_FUNCTION sk_u32 sk_hand_over_column(sk_run_of_triangles run, sk_cell_triangle t, sk_u32 i, sk_u32 j, sk_column column,
+                                       sk_u32 triangle, const int put) {
     const int along_z = t.slot_w.cell == 16u, along_x = t.slot_w.cell == 1u;
     const sk_u32 stride = along_z ? SK_BIN_SIDE * SK_BIN_SIDE : along_x ? 1u : SK_BIN_SIDE;
-    sk_u32 count = 0u;
-    for (sk_u32 i = row.first; i <= row.last; ++i) {
-        const sk_column column = sk_enter_column(grid, t, row, i);
-        const sk_u32 end = column.first <= column.last ? column.last + 1u : column.first;
-        for (sk_u32 k = column.first; k < end;) {
-            const sk_u32 x = along_x ? k : i, y = along_z ? j : along_x ? i : k, z = along_z ? k : j;
-            const sk_u32 cells = sk_min_u32(end - k, SK_BIN_SIDE - k % SK_BIN_SIDE);
-            SK_GLOBAL sk_u32* next = run.next + sk_number_at(run.bins, x / SK_BIN_SIDE, y / SK_BIN_SIDE, z / SK_BIN_SIDE);
-            const sk_u32 place = *next, first = sk_cell_in_bin(x, y, z);
-            *next = place + cells;
-            if (put)
-                for (sk_u32 c = 0u; c < cells; ++c) {
-                    run.cells[place + c] = (sk_u16)(first + c * stride);
-                    run.triangles[place + c] = triangle;
-                }
-            k += cells;
-        }
-        count += end - column.first;
+    const sk_u32 end = column.first <= column.last ? column.last + 1u : column.first;
+    for (sk_u32 k = column.first; k < end;) {
+        const sk_u32 x = along_x ? k : i, y = along_z ? j : along_x ? i : k, z = along_z ? k : j;
+        const sk_u32 cells = sk_min_u32(end - k, SK_BIN_SIDE - k % SK_BIN_SIDE);
+        SK_GLOBAL sk_u32* next = run.next + sk_number_at(run.bins, x / SK_BIN_SIDE, y / SK_BIN_SIDE, z / SK_BIN_SIDE);
+        const sk_u32 place = *next, first = sk_cell_in_bin(x, y, z);
+        *next = place + cells;
+        if (put)
+            for (sk_u32 c = 0u; c < cells; ++c) {
+                run.cells[place + c] = (sk_u16)(first + c * stride);
+                run.triangles[place + c] = triangle;
+            }
+        k += cells;
     }
-    return count;
+    return end - column.first;
+}
+
+/** Whether pairs are still counted: not if they are known to be more than any grid may have. */
+SK_FUNCTION int sk_still_counts(SK_GLOBAL const sk_u32* report) {
+    return *(volatile SK_GLOBAL const sk_u32*)(report + SK_TOTAL_FOUND) < SK_MOST_LONG_ROWS;
+}
+SK_FUNCTION void sk_add_found(SK_GLOBAL sk_u32* report, sk_u32 pairs) {
+    if (pairs / SK_LONG_ROW != 0u) (void)sk_atomic_add(report + SK_TOTAL_FOUND, pairs / SK_LONG_ROW);
+}
+
+/** The pairs of a triangle that has no mask. */
+SK_FUNCTION void sk_hand_over_rows(sk_run_of_triangles run, SetkaGridHeader grid, sk_cell_triangle t, sk_u32 triangle,
+                                   SK_GLOBAL sk_u32* report, const int put) {
+    const sk_u32 last = sk_last_row(grid, t);
+#if SK_WIDTH > 1
+    const sk_wide_triangle wide = sk_widen(t);
+    for (sk_u32 start = sk_first_row(grid, t); start <= last; start += SK_WIDTH) {
+        const sk_rows_lanes rows = sk_enter_rows(grid, t, wide, start);
+        for (sk_u32 r = 0u; r < SK_WIDTH && start + r <= last; ++r)
+            if (put || sk_still_counts(report)) {
+                sk_u32 pairs = 0u;
+                for (sk_u32 from = rows.first[r]; from <= rows.last[r]; from += SK_WIDTH) {
+                    const sk_columns_lanes columns =
+                        sk_enter_columns(grid, t, wide, start + r, rows.low[r], rows.high[r], from);
+                    for (sk_u32 c = 0u; c < SK_WIDTH && from + c <= rows.last[r]; ++c) {
+                        sk_column column;
+                        column.first = columns.first[c];
+                        column.last = columns.last[c];
+                        pairs += sk_hand_over_column(run, t, from + c, start + r, column, triangle, put);
+                    }
+                }
+                if (!put) sk_add_found(report, pairs);
+            }
+    }
+#else
+    for (sk_u32 j = sk_first_row(grid, t); j <= last; ++j)
+        if (put || sk_still_counts(report)) {
+            const sk_row row = sk_enter_row(grid, t, j);
+            sk_u32 pairs = 0u;
+            for (sk_u32 i = row.first; i <= row.last; ++i)
+                pairs += sk_hand_over_column(run, t, i, j, sk_enter_column(grid, t, row, i), triangle, put);
+            if (!put) sk_add_found(report, pairs);
+        }
+#endif
 }
 
 /** Adds up in how many cells large triangles are at least. Whether all known so far are in too many. */
@@ -137,13 +175,7 @@ SK_FUNCTION void sk_hand_over_run(sk_run_of_triangles run, sk_u32 first, sk_u32 
         } else if (sk_reach_kind(reach) == SK_REACH_MASK) {
             sk_hand_over_mask(run, reach, i, put);
         } else {
-            const sk_cell_triangle t = sk_load_cell_triangle(grid, triangles + (size_t)i * 9u);
-            const sk_u32 last = sk_last_row(grid, t);
-            for (sk_u32 j = sk_first_row(grid, t); j <= last; ++j)
-                if (put || *(volatile SK_GLOBAL sk_u32*)(report + SK_TOTAL_FOUND) < SK_MOST_LONG_ROWS) {
-                    const sk_u32 units = sk_hand_over_row(run, grid, t, j, i, put) / SK_LONG_ROW;
-                    if (!put && units != 0u) (void)sk_atomic_add(report + SK_TOTAL_FOUND, units);
-                }
+            sk_hand_over_rows(run, grid, sk_load_cell_triangle(grid, triangles + (size_t)i * 9u), i, report, put);
         }
     }
 }
@@ -220,7 +252,9 @@ SK_FUNCTION int sk_is_binned(SK_GLOBAL const sk_u32* report, sk_u32 capacity) {
 
 /** Counts the pairs first to end - 1 of a bin in its cells. */
 SK_FUNCTION void sk_count_in_bin(sk_u32 first, sk_u32 end, SK_GLOBAL const sk_u16* cells, SK_GLOBAL sk_u32* counters) {
-    for (sk_u32 c = 0u; c < SK_BIN_CELLS; ++c) counters[c] = 0u;
+    sk_four_counts none;
+    none.a = none.b = none.c = none.d = 0u;
+    for (sk_u32 c = 0u; c < SK_BIN_CELLS / 4u; ++c) ((SK_GLOBAL sk_four_counts*)counters)[c] = none;
     for (sk_u32 p = first; p < end; ++p) counters[cells[p]] += 1u;
 }
 

@@ -119,15 +119,15 @@ SK_FUNCTION void sk_grid_transform(SK_LOCAL sk_u32* scratch, sk_u32 n, sk_u32 el
     sk_extremes seen;
     seen.low = sk_make3(infinity, infinity, infinity);
     seen.high = sk_make3(-infinity, -infinity, -infinity);
+    sk_u32 single = elements; /* so many one after the other */
 #if SK_WIDTH > 1
-    const int is_run = size == 1u && first < n;
-    if (is_run)
+    if (size == 1u && first < n) {
         seen = sk_transform_run((sk_u32)first, (sk_u32)(first + elements < n ? first + elements : n), instance_count, positions,
                                 indices, instances, instance_starts, triangles, report + SK_REPORT_BAD);
-#else
-    const int is_run = 0;
+        single = 0u;
+    }
 #endif
-    for (sk_u32 k = 0u; k < elements && !is_run; ++k) {
+    for (sk_u32 k = 0u; k < single; ++k) {
         const sk_u64 i = first + (sk_u64)k * size;
         if (i < n)
             seen = sk_transform_triangle((sk_u32)i, instance_count, positions, indices, instances, instance_starts,
