@@ -34,7 +34,8 @@ std::uint64_t usual_pairs(std::uint32_t triangles, float density) {
 /// Runs long enough to be worth their counters, and so many that cores come out even; a work-item takes a sixteenth of what a core does, with
 /// counters that stay in its cache. Other devices may end a long loop early, or have very many work-items: there bins and short runs have one each.
 BinRoom divided(const Device& device, std::uint32_t triangles, BinRoom room) {
-    constexpr std::uint32_t shortest = 2048, most_counters = 1u << 24, most_items = 256;
+    constexpr std::uint32_t most_counters = 1u << 24, most_items = 256;
+    const std::uint32_t shortest = prefers_bins(device) ? 2048 : 64;
     const std::uint32_t shares = 16 * std::max(1u, device.info().compute_units);
     const std::uint64_t runs = prefers_bins(device) ? std::max(64u, shares) : divide_up(triangles, shortest);
     const std::uint64_t most_runs = std::clamp<std::uint64_t>(most_counters / room.bins, 1, runs);
