@@ -82,6 +82,15 @@ std::uint64_t count_bytes(const Device& device, std::uint32_t triangles, const B
            divide_up(room.bins, SK_BIN_PART) * sizeof(std::uint64_t);
 }
 
+/// Whether counting fits the budget beside the world's triangles, and each of its tables one allocation.
+bool fits_counting(const GridLimits& limits, const Device& device, const WorldGeometry& geometry, const BinRoom& room) {
+    const std::uint32_t n = geometry.triangle_count;
+    for (const std::uint64_t words : {std::uint64_t(room.pairs), n * reach_words, room.blocks * block_words,
+                                      std::uint64_t(room.runs) * room.bins, std::uint64_t(room.items) * SK_BIN_CELLS})
+        if (!limits.fits_an_allocation(words)) return false;
+    return limits.fits(geometry.triangles.size_bytes() + count_bytes(device, n, room));
+}
+
 /// Launches a kernel over all bins, every work-item a group of its own. Where a stop can be requested, some at a time.
 template <typename... Ts>
 void launch_bins(Queue& queue, Kernel kernel, std::uint32_t bins, std::uint32_t items, const Ts&... arguments) {
@@ -163,8 +172,7 @@ BinnedCount start_bins(Queue& queue, const StartedTransform& transform, const Gr
     const std::uint32_t n = geometry.triangle_count;
     const BinRoom room = usual_room(device, n, options);
     if (!device.impl()->has_doubles() || queue.stop_token().stop_possible() || room.blocks == 0 ||
-        !limits.fits_an_allocation(room.pairs) || !limits.fits_an_allocation(n * reach_words) ||
-        !limits.fits(geometry.triangles.size_bytes() + count_bytes(device, n, room))) {
+        !fits_counting(limits, device, geometry, room)) {
         BinnedCount nothing;
         nothing.report = transform.report;
         return nothing;
@@ -184,10 +192,7 @@ std::optional<BinnedCount> finish_bins(Queue& queue, const WorldGeometry& geomet
     const std::uint64_t world = geometry.triangles.size_bytes();
     BinnedCount count = std::move(started);
     BlockTotals totals = totals_of(words);
-    const auto fits = [&](const BinRoom& room) {
-        return limits.fits_an_allocation(room.pairs) && limits.fits_an_allocation(n * reach_words) &&
-               limits.fits(world + count_bytes(device, n, room));
-    };
+    const auto fits = [&](const BinRoom& room) { return fits_counting(limits, device, geometry, room); };
     /// Counts in this grid, and fills bins if there is room for pairs.
     const auto count_again = [&](std::uint64_t pairs) {
         const BinRoom room = room_of(device, header, pairs);
