@@ -3,12 +3,18 @@
 #include "bench/subject.hpp"
 
 #include <algorithm>
+#include <cstring>
+#include <string>
 
+#include "backend/device.hpp"
 #include "workload/fingerprint.hpp"
 
 namespace setka::bench {
 
 namespace {
+
+/// Whether kernels trace neighbours in a picture together.
+[[nodiscard]] bool device_traces_tiles(const Device& device) { return device.impl()->width() > 1; }
 
 /// The queries that no fingerprint covers: each ray has to be occluded exactly if it has a closest hit.
 void check_queries(Queue& queue, const Grid& grid, const workload::StandardRays& rays, GridStep step,
@@ -42,8 +48,12 @@ Subject::Subject(Target& target, const SceneCase& name, const LoadedScene& loade
       scene_(queue_, loaded.scene) {
     use_density(golden_density);
     rays_ = workload::standard_rays(queue_, *grid_, view_, options.size);
+    if (device_traces_tiles(queue_.device()))
+        shadow_picture_ = queue_.upload(
+            std::span<const Ray>(workload::in_places(queue_.download(rays_.shadow), rays_.pixels, rays_.primary.size())), "shadow rays");
     hits_ = queue_.make_buffer<Hit>(rays_.primary.size(), "hits");
     flags_ = queue_.make_buffer<std::uint32_t>(rays_.primary.size(), "occlusion flags");
+    check_picture();
 }
 
 void Subject::use_density(float density) {
@@ -74,9 +84,33 @@ void Subject::rebuild() {
 
 void Subject::trace(const TraceCase& what, GridStep step) {
     const Tracer tracer({.step = step});
-    const RayBatch batch(rays_.*what.rays, {}, what.is_picture() ? options_.size : 0);
-    if (what.query == Query::Closest) tracer.closest_hit(queue_, *grid_, batch, hits_);
-    else tracer.any_hit(queue_, *grid_, batch, flags_);
+    if (what.query == Query::Closest) tracer.closest_hit(queue_, *grid_, batch(what), hits_);
+    else tracer.any_hit(queue_, *grid_, batch(what), flags_);
+}
+
+RayBatch Subject::batch(const TraceCase& what) const {
+    if (what.is_shadow() && !shadow_picture_.empty()) return {shadow_picture_, {}, options_.size};
+    return {rays_.*what.rays, {}, what.is_primary() ? options_.size : 0};
+}
+
+void Subject::check_picture() {
+    if (shadow_picture_.empty()) return;
+    const Tracer tracer;
+    const RayBatch picture(shadow_picture_, {}, options_.size);
+    tracer.closest_hit(queue_, *grid_, picture, hits_);
+    tracer.any_hit(queue_, *grid_, picture, flags_);
+    const auto hits = queue_.download(hits_);
+    const auto flags = queue_.download(flags_);
+    tracer.closest_hit(queue_, *grid_, rays_.shadow, hits_);
+    tracer.any_hit(queue_, *grid_, rays_.shadow, flags_);
+    const auto expected_hits = queue_.download(hits_);
+    const auto expected_flags = queue_.download(flags_);
+    for (std::size_t i = 0; i < rays_.pixels.size(); ++i) {
+        const std::uint32_t pixel = rays_.pixels[i];
+        if (std::memcmp(&hits[pixel], &expected_hits[i], sizeof(Hit)) != 0 || flags[pixel] != expected_flags[i])
+            throw Mismatch(name_.to_string() + " on " + target_ + ": the shadow ray of pixel " + std::to_string(pixel) +
+                           " has another result as one of a picture than alone; it is not timed");
+    }
 }
 
 const MeanCost& Subject::cost(const TraceCase& what, GridStep step) {

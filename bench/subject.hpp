@@ -27,8 +27,8 @@ struct TraceCase {
     Buffer<Ray> workload::StandardRays::*rays;
     Query query;
 
-    /// Whether they come in the rows of the picture: the others are left out where nothing is hit.
-    [[nodiscard]] constexpr bool is_picture() const { return rays == &workload::StandardRays::primary; }
+    [[nodiscard]] constexpr bool is_primary() const { return rays == &workload::StandardRays::primary; }
+    [[nodiscard]] constexpr bool is_shadow() const { return rays == &workload::StandardRays::shadow; }
 };
 
 /// Three kinds of rays with the query that renderers make, then two of them with the other one.
@@ -62,13 +62,17 @@ class Subject final : public Fixture {
 
     /// Replaces the grid by a new one, with only one of them in memory at a time.
     void rebuild();
-    /// Enqueues a query of one kind of rays.
+    /// Enqueues a query of one kind of rays. Where the device traces tiles of a picture, shadow rays come as one too, in which they are
+    /// left out where nothing is hit (RayBatch::row_length).
     void trace(const TraceCase& what, GridStep step);
     /// What closest hits of these rays cost; measured once.
     [[nodiscard]] const MeanCost& cost(const TraceCase& what, GridStep step);
 
   private:
     void validate(float density);
+    [[nodiscard]] RayBatch batch(const TraceCase& what) const;
+    /// Throws Mismatch unless the picture of shadow rays has the results of the shadow rays alone.
+    void check_picture();
 
     SceneCase name_;
     workload::StandardView view_;
@@ -81,6 +85,7 @@ class Subject final : public Fixture {
     std::optional<float> density_;  ///< of a grid that was checked
     std::optional<Grid> grid_;
     workload::StandardRays rays_;
+    Buffer<Ray> shadow_picture_;  ///< empty unless the device traces tiles
     Buffer<Hit> hits_;
     Buffer<std::uint32_t> flags_;
     std::map<std::pair<std::string, GridStep>, MeanCost> costs_;

@@ -27,17 +27,17 @@ void flush_denormals() {
     return kind == &workload::StandardRays::diffuse ? Coherence::Incoherent : Coherence::Coherent;
 }
 
-/// Tiles of four columns and `width` rays of a square picture one after the other: packets as setka's own, of such rays
-/// (RayBatch::row_length).
-[[nodiscard]] std::vector<Ray> in_tiles(const std::vector<Ray>& rays, std::uint32_t size, std::size_t width) {
+/// The rays of a square picture in tiles of four columns and `width` rays, one tile after the other: packets as setka's own, of such rays
+/// (RayBatch::row_length). Where there is none, the next one moves up, so that no packet has gaps.
+[[nodiscard]] std::vector<Ray> in_tiles(const std::vector<Ray>& picture, std::uint32_t size, std::size_t width) {
     const auto rows = static_cast<std::uint32_t>(width / 4);
     std::vector<Ray> tiles;
-    tiles.reserve(rays.size());
+    tiles.reserve(picture.size());
     for (std::uint32_t top = 0; top < size; top += rows)
         for (std::uint32_t left = 0; left < size; left += 4)
             for (std::uint32_t y = top; y < std::min(top + rows, size); ++y)
                 for (std::uint32_t x = left; x < std::min(left + 4, size); ++x)
-                    tiles.push_back(rays[std::size_t(y) * size + x]);
+                    if (const Ray& ray = picture[std::size_t(y) * size + x]; ray.tmin <= ray.tmax) tiles.push_back(ray);
     return tiles;
 }
 
@@ -52,7 +52,9 @@ EmbreeSubject::EmbreeSubject(Target& target, const SceneCase& name, const Loaded
     for (const auto kind : {&workload::StandardRays::primary, &workload::StandardRays::shadow,
                             &workload::StandardRays::diffuse}) {
         std::vector<Ray> rays = queue.download(reference.rays().*kind);
-        if (kind == trace_cases[0].rays) rays = in_tiles(rays, options.size, width);
+        if (kind == &workload::StandardRays::shadow)
+            rays = workload::in_places(rays, reference.rays().pixels, reference.rays().primary.size());
+        if (coherence(kind) == Coherence::Coherent) rays = in_tiles(rays, options.size, width);
         batches_.push_back({kind, Tracer().closest_hit(queue, reference.grid(), rays),
                             make_ray_packets(rays, coherence(kind), width)});
     }

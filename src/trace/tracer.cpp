@@ -78,11 +78,11 @@ struct Query {
         sk_trace_params params = trace_params(structure.geometry(), options.mask);
         params.skips = batch.skip.empty() ? 0 : 1;
         // A GPU's team of 32 shares the work of its rays anyway, and one whose rays all meet the same long lists ends last.
-        const std::uint32_t row = batch.row_length, tile_rows = queue.device().impl()->width() / SK_TILE_COLUMNS;
-        if (row != 0 && tile_rows != 0) {
+        const std::uint32_t row = batch.row_length;
+        if (row != 0 && queue.device().impl()->width() > 1) {
             const auto n = static_cast<std::uint32_t>(batch.rays.size());
             params.row_length = row;
-            params.tiled_rays = n - n % row - n / row % tile_rows * row;
+            params.tiled_rays = n - n % row - n / row % SK_ITEM_ROWS * row;
         }
         return params;
     }

@@ -72,6 +72,13 @@ StandardView standard_view(const Bounds& bounds, Viewpoint viewpoint) {
     return view;
 }
 
+std::vector<Ray> in_places(std::span<const Ray> rays, std::span<const std::uint32_t> pixels, std::size_t size) {
+    constexpr Ray none{{0, 0, 0}, 1, {0, 0, 1}, 0};
+    std::vector<Ray> all(size, none);
+    for (std::size_t i = 0; i < rays.size(); ++i) all[pixels[i]] = rays[i];
+    return all;
+}
+
 StandardRays standard_rays(Queue& queue, const Structure& structure, const StandardView& view, std::uint32_t size) {
     StandardRays rays;
     rays.primary = camera_rays(queue, view.camera, size, size);
@@ -86,6 +93,7 @@ StandardRays standard_rays(Queue& queue, const Structure& structure, const Stand
     std::vector<Ray> shadow, diffuse;
     for (std::size_t i = 0; i < hits.size(); ++i) {
         if (hits[i].primitive == SETKA_NO_HIT) continue;
+        rays.pixels.push_back(static_cast<std::uint32_t>(i));
         const std::size_t triangle = std::size_t(starts[hits[i].instance]) + hits[i].primitive;
         const SurfacePoint point = surface_point(primary[i], hits[i], &triangles[9 * triangle], view.lift);
         shadow.push_back(make_ray(point.position, light - point.position, 1));

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "setka/grid.hpp"
 #include "setka/tracer.hpp"
@@ -32,7 +34,11 @@ struct StandardRays {
     Buffer<Ray> primary;
     Buffer<Ray> shadow;   ///< to the light, which is at t = 1
     Buffer<Ray> diffuse;  ///< cosine-distributed around the face's normal, on the side of the ray
+    std::vector<std::uint32_t> pixels;  ///< of the shadow and diffuse rays: the numbers of their primary rays
 };
+
+/// One for each primary ray, in their order, where `rays` are only those of some of them: the others have tmin > tmax.
+[[nodiscard]] std::vector<Ray> in_places(std::span<const Ray> rays, std::span<const std::uint32_t> pixels, std::size_t size);
 
 /// Traces the primary rays, and makes the others on the host with + - * / sqrt on floats: the same on every machine.
 /// Shadow and diffuse are empty if no primary ray hits.

@@ -68,6 +68,33 @@ TEST_P(Hits, OfGridsEqualThoseOfBruteForce) {
     }
 }
 
+/// Where neighbours go together through the grid, also with what they skip.
+TEST_P(Hits, OfBundlesEqualThoseOfBruteForce) {
+    const setka::Scene host_scene = scene();
+    const auto rays = support::bundled_rays(oracle::make_world(host_scene), support::sized(65536, 4096), 46);
+    setka::Queue queue = device().make_queue();
+    const setka::DeviceScene device_scene(queue, host_scene);
+    const auto brute = setka::BruteForce::build(queue, device_scene);
+    const auto unskipped = setka::Tracer().closest_hit(queue, brute, rays);
+    std::vector<setka::Primitive> skip(rays.size(), {SETKA_NO_HIT, SETKA_NO_HIT});
+    for (std::size_t i = 0; i < rays.size(); i += 5) skip[i] = {unskipped[i].primitive, unskipped[i].instance};
+    const auto expected = setka::Tracer().closest_hit(queue, brute, rays, skip);
+    setka::RayBatch batch(queue.upload(std::span(rays), "rays"), queue.upload(std::span(skip), "skip"));
+    const auto hits = queue.make_buffer<setka::Hit>(rays.size(), "hits");
+    const auto flags = queue.make_buffer<std::uint32_t>(rays.size(), "flags");
+    for (const float density : densities) {
+        const auto grid = setka::make_grid_builder({.density = density})->build(queue, device_scene);
+        for (const std::uint32_t row : {0u, 64u}) {
+            SCOPED_TRACE("density " + std::to_string(density) + ", rows of " + std::to_string(row));
+            batch.row_length = row;
+            setka::Tracer().closest_hit(queue, grid, batch, hits);
+            setka::Tracer().any_hit(queue, grid, batch, flags);
+            EXPECT_TRUE(support::same_hits(rays, expected, queue.download(hits)));
+            EXPECT_TRUE(support::same_occlusion(rays, expected, queue.download(flags)));
+        }
+    }
+}
+
 TEST_P(Hits, OfLongThinGridsEqualThoseOfBruteForce) {
     const setka::Scene host_scene = scene();
     const auto rays = support::adversarial_rays(oracle::make_world(host_scene), 20000, 43);

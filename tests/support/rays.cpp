@@ -157,6 +157,20 @@ class RayMaker {
         return ray;
     }
 
+    /// A ray next to `ray`, `spread` times the extent from it where it starts, or where it would be at t = 1.
+    Ray neighbour(const Ray& ray, float spread, bool origin_moves, bool target_moves) {
+        Ray next = ray;
+        const float longest =
+            std::max({std::fabs(ray.direction[0]), std::fabs(ray.direction[1]), std::fabs(ray.direction[2])});
+        for (int k = 0; k < 3; ++k) {
+            const float by = spread * random_.between(-1, 1);
+            if (origin_moves) next.origin[k] += by * size_;
+            if (origin_moves && !target_moves) next.direction[k] -= by * size_;
+            if (target_moves && (!origin_moves || random_.below(2))) next.direction[k] += spread * longest * random_.between(-1, 1);
+        }
+        return next;
+    }
+
     /// Any bits at all.
     Ray noise() {
         const auto any = [&] {
@@ -238,6 +252,28 @@ const std::vector<std::string>& ray_kinds() {
         return result;
     }();
     return all;
+}
+
+std::vector<Ray> bundled_rays(const World& world, std::size_t count, std::uint64_t seed) {
+    RayMaker maker(world, seed);
+    Random random(seed + 1);
+    std::vector<Ray> rays;
+    rays.reserve(count);
+    constexpr float spreads[] = {0, 1e-7f, 1e-4f, 1e-2f, 0.03f, 0.2f};
+    constexpr std::size_t bundle = 128;
+    Ray leader{};
+    float spread = 0;
+    std::uint32_t moves = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        if (i % bundle == 0) {
+            leader = (maker.*kinds[i / bundle % std::size(kinds)].make)();
+            spread = spreads[random.below(std::size(spreads))];
+            moves = random.below(3) + 1;
+        }
+        if (random.below(16) == 0) rays.push_back((maker.*kinds[random.below(std::size(kinds))].make)());
+        else rays.push_back(maker.neighbour(leader, spread, (moves & 1) != 0, (moves & 2) != 0));
+    }
+    return rays;
 }
 
 std::vector<Ray> adversarial_rays(const World& world, std::size_t count, std::uint64_t seed) {

@@ -17,4 +17,8 @@ namespace support {
 [[nodiscard]] std::vector<oracle::Ray> adversarial_rays(const oracle::World& world, std::size_t count,
                                                         std::uint64_t seed);
 
+/// Bundles of rays, as neighbours in a picture are: each is an adversarial ray and others close to it, from one point, parallel, to one
+/// point or neither, with one in sixteen of another kind in between.
+[[nodiscard]] std::vector<oracle::Ray> bundled_rays(const oracle::World& world, std::size_t count, std::uint64_t seed);
+
 }  // namespace support

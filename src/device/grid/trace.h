@@ -8,6 +8,7 @@
 
 #include "device/grid/walk.h"
 #if SK_WIDTH > 1
+#include "device/grid/walk_frustum.h"
 #include "device/grid/walk_lanes.h"
 #include "device/trace/tiles.h"
 #endif
@@ -46,20 +47,48 @@ SK_FUNCTION sk_u32 sk_trace_flights(sk_flight* flights, sk_u32 n, sk_u32 first, 
     sk_u32 count = 0u;
     for (sk_u32 i = first; i < n && count < SK_FLIGHTS; i += SK_WIDTH) {
         /* Lanes past the last ray trace it once more. */
-#define SK_NUMBER(k) (sk_i32) sk_ray_at(params, sk_min_u32(i + (k), n - 1u))
-        const sk_iN number = SK_INTS(SK_NUMBER);
-#undef SK_NUMBER
+        const sk_iN number = sk_rays_at(params, i, n);
         sk_iN skipped = sk_same_i((sk_i32)SETKA_NO_HIT);
         if (params.skips != 0u) {
 #define SK_SKIPPED(k) (sk_i32) sk_skipped_triangle(params, tables.instance_starts, skip, (sk_u32)sk_lane(number, k))
             skipped = SK_INTS(SK_SKIPPED);
 #undef SK_SKIPPED
         }
-        sk_take_off(flights + count, grid, number, sk_prepare_ray_lanes(params, rays, number), skipped);
+        sk_take_off(flights + count, number, sk_prepare_ray_lanes(params, rays, number), skipped);
         count += 1u;
     }
+    sk_walk_frustums(grid, params, flights, count, tables, any);
     sk_walk_grid_lanes(grid, params, flights, count, tables, any);
     return count;
+}
+
+/** Writes the hits of the first `count` rays of a flight. */
+SK_FUNCTION void sk_write_hits(const sk_flight* f, sk_u32 count, sk_trace_params params, sk_grid_tables tables, SK_GLOBAL SetkaHit* hits) {
+    const sk_iN none = f->best.triangle == sk_same_i((sk_i32)SETKA_NO_HIT);
+    const sk_fN zero = sk_same_f(0.0f);
+    sk_iN instance = none, primitive = f->best.triangle;
+    sk_i32 number[SK_WIDTH], instances[SK_WIDTH];
+    float rows[4][SK_WIDTH];
+    if (params.instance_count > 1u) {
+#define SK_INSTANCE_OF(k) \
+    sk_lane(none, k) != 0 ? -1 : (sk_i32)sk_find_segment(tables.instance_starts, params.instance_count, (sk_u32)sk_lane(primitive, k))
+        instance = SK_INTS(SK_INSTANCE_OF);
+#undef SK_INSTANCE_OF
+        primitive = sk_select_i(none, primitive, primitive - sk_gather_i(tables.instance_starts, instance & ~none, 1u));
+    }
+    const sk_columns turned = sk_turn_rows(sk_select_f(none, sk_same_f(sk_bits_float(0x7f800000u)), sk_user_t_lanes(f->ray, f->best.w)),
+                                           sk_select_f(none, zero, f->best.u), sk_select_f(none, zero, f->best.v), sk_lanes_as_float(primitive));
+    sk_store_f(turned.a, rows[0]);
+    sk_store_f(turned.b, rows[1]);
+    sk_store_f(turned.c, rows[2]);
+    sk_store_f(turned.d, rows[3]);
+    sk_store_i(f->number, number);
+    sk_store_i(instance, instances);
+    for (sk_u32 k = 0u; k < count; ++k) {
+        SK_GLOBAL SetkaHit* const hit = hits + number[k];
+        sk_store_f4(sk_load_f4(&rows[k % 4u][k / 4u * 4u]), &hit->t);
+        hit->instance = (sk_u32)instances[k];
+    }
 }
 
 SK_FUNCTION void sk_trace_closest(SK_SHARED sk_team* team, sk_u32 n, sk_u32 i, SetkaGridHeader grid,
@@ -69,17 +98,7 @@ SK_FUNCTION void sk_trace_closest(SK_SHARED sk_team* team, sk_u32 n, sk_u32 i, S
     sk_flight flights[SK_FLIGHTS];
     const sk_u32 count = sk_trace_flights(flights, n, i, grid, params, rays, skip, tables, 0);
     (void)team;
-    for (sk_u32 f = 0u; f < count; ++f) {
-        float t[SK_WIDTH], u[SK_WIDTH], v[SK_WIDTH];
-        sk_i32 triangle[SK_WIDTH], number[SK_WIDTH];
-        sk_store_i(flights[f].number, number);
-        sk_store_f(sk_user_t_lanes(flights[f].ray, flights[f].best.w), t);
-        sk_store_f(flights[f].best.u, u);
-        sk_store_f(flights[f].best.v, v);
-        sk_store_i(flights[f].best.triangle, triangle);
-        for (sk_u32 k = 0u; k < SK_WIDTH && i + f * SK_WIDTH + k < n; ++k)
-            hits[number[k]] = sk_name_hit(params, tables.instance_starts, t[k], u[k], v[k], (sk_u32)triangle[k]);
-    }
+    for (sk_u32 f = 0u; f < count; ++f) sk_write_hits(flights + f, sk_min_u32(n - (i + f * SK_WIDTH), SK_WIDTH), params, tables, hits);
 }
 
 SK_FUNCTION void sk_trace_any(SK_SHARED sk_team* team, sk_u32 n, sk_u32 i, SetkaGridHeader grid, sk_trace_params params,

@@ -137,7 +137,7 @@ SK_FUNCTION sk_span_lanes sk_limit_lanes(sk_ray_lanes ray) {
     const sk_fN to_w = sk_lanes_as_float((254 << 23) - sk_lanes_as_int(ray.scale));
     const sk_fN pre = sk_lanes_as_float((254 << 23) - sk_lanes_as_int(ray.pre));
     const sk_fN a = (ray.tmin * to_w) * pre, b = (ray.tmax * to_w) * pre;
-    const sk_fN step = 0x1p-148f * pre, coarse = step + step * to_w;
+    const sk_fN step = 0x1p-100f * pre, coarse = step + step * to_w;
     const sk_fN start = (a - ray.shift) - ((sk_abs_f(a) + sk_abs_f(ray.shift)) * 0x1p-20f + coarse);
     const sk_fN end = (b - ray.shift) + ((sk_abs_f(b) + sk_abs_f(ray.shift)) * 0x1p-20f + coarse);
     sk_span_lanes r;
@@ -157,7 +157,7 @@ typedef struct sk_flight {
     sk_vec3N o; /* the ray's, along its kx, ky and kz */
     sk_iN kz;
     sk_iN skip;
-    sk_fN end, last; /* nothing beyond is of interest; the same with the best hit */
+    sk_fN start, end, last; /* nothing before or beyond is of interest; the end with the best hit */
     sk_iN walking;
     sk_place_lanes at;
     sk_best_lanes best;
@@ -168,21 +168,26 @@ typedef struct sk_flight {
     sk_u32 known[3][SK_KNOWN];
 } sk_flight;
 
-SK_FUNCTION void sk_take_off(sk_flight* f, SetkaGridHeader grid, sk_iN number, sk_ray_lanes ray, sk_iN skip) {
+SK_FUNCTION void sk_take_off(sk_flight* f, sk_iN number, sk_ray_lanes ray, sk_iN skip) {
     const sk_span_lanes span = sk_limit_lanes(ray);
     f->number = number;
     f->ray = ray;
     f->o = sk_turn_axes(ray, ray.o);
     f->kz = sk_select_i(ray.along_x, sk_same_i(0), sk_select_i(ray.along_y, sk_same_i(1), sk_same_i(2)));
     f->skip = skip;
+    f->start = span.w0;
     f->end = span.w1;
     f->last = span.w1;
     f->walking = span.meets;
-    f->at.x = sk_make_axis_lanes(grid, 0u, ray.o.x, ray.d.x, ray.inverse.x, span.w0);
-    f->at.y = sk_make_axis_lanes(grid, 1u, ray.o.y, ray.d.y, ray.inverse.y, span.w0);
-    f->at.z = sk_make_axis_lanes(grid, 2u, ray.o.z, ray.d.z, ray.inverse.z, span.w0);
-    f->at.cube = sk_same_i(0);
     f->best = sk_no_hit_lanes();
+}
+
+/** Puts the rays into their first cells. */
+SK_FUNCTION void sk_enter_lanes(sk_flight* f, SetkaGridHeader grid) {
+    f->at.x = sk_make_axis_lanes(grid, 0u, f->ray.o.x, f->ray.d.x, f->ray.inverse.x, f->start);
+    f->at.y = sk_make_axis_lanes(grid, 1u, f->ray.o.y, f->ray.d.y, f->ray.inverse.y, f->start);
+    f->at.z = sk_make_axis_lanes(grid, 2u, f->ray.o.z, f->ray.d.z, f->ray.inverse.z, f->start);
+    f->at.cube = sk_same_i(0);
     for (sk_u32 axis = 0u; axis < 3u; ++axis)
         for (sk_u32 k = 0u; k < SK_KNOWN; ++k) f->known[axis][k] = 0xffffffffu; /* no record: each has a triangle */
 }
@@ -209,6 +214,13 @@ SK_FUNCTION sk_best_lanes sk_test_candidates(sk_grid_tables tables, sk_trace_par
     r.v = sk_select_f(better, hit.v, best.v);
     r.triangle = sk_select_i(better, number, best.triangle);
     return r;
+}
+
+/** Nothing behind the best hits is of interest; with `any` nothing at all. */
+SK_FUNCTION void sk_take_best(sk_flight* f, const int any) {
+    const sk_iN found = f->best.triangle != sk_same_i((sk_i32)SETKA_NO_HIT);
+    f->last = sk_select_f(found, sk_min_f(f->best.w, f->end), f->end);
+    if (any) f->walking = f->walking & ~found;
 }
 
 /** Bit k of a lane: its ray may hit triangle references[k]; of `count` triangles, up to 32. */
@@ -311,8 +323,10 @@ SK_FUNCTION void sk_walk_grid_lanes(SetkaGridHeader grid, sk_trace_params params
     sk_task tasks[SK_FLIGHTS * SK_WIDTH];
     sk_u32 walking_count = 0u;
     for (sk_u32 k = 0u; k < count; ++k) {
+        const int walks = sk_any_lane(flights[k].walking);
+        if (walks) sk_enter_lanes(flights + k, grid);
         walking[walking_count] = k;
-        walking_count += sk_any_lane(flights[k].walking) ? 1u : 0u;
+        walking_count += walks ? 1u : 0u;
     }
     while (walking_count != 0u) {
         sk_u32 listed_count = 0u, task_count = 0u, hopeful_count = 0u, still_count = 0u;
@@ -335,12 +349,7 @@ SK_FUNCTION void sk_walk_grid_lanes(SetkaGridHeader grid, sk_trace_params params
             sk_flight* const f = flights + hopeful[k];
             sk_test_all_candidates(tables, params, f, f->candidates, f->offset);
         }
-        for (sk_u32 k = 0u; k < listed_count; ++k) {
-            sk_flight* const f = flights + listed[k];
-            const sk_iN found = f->best.triangle != sk_same_i((sk_i32)SETKA_NO_HIT);
-            f->last = sk_select_f(found, sk_min_f(f->best.w, f->end), f->end);
-            if (any) f->walking = f->walking & ~found;
-        }
+        for (sk_u32 k = 0u; k < listed_count; ++k) sk_take_best(flights + listed[k], any);
         for (sk_u32 k = 0u; k < walking_count; ++k) {
             const sk_u32 number = walking[k];
             sk_flight* const f = flights + number;

@@ -25,5 +25,7 @@ typedef struct sk_trace_params {
 
 /** Columns of a tile (tiles.h), which has SK_WIDTH rays: as many of each row. */
 #define SK_TILE_COLUMNS 4u
+/** Rows of a picture that a work-item of a CPU traces rays of, a tile for each of its vectors. */
+#define SK_ITEM_ROWS 8u
 
 #endif

@@ -77,6 +77,18 @@ SK_FUNCTION sk_fN sk_straighten_lanes(sk_fN d) {
     return sk_select_f(sk_abs_f(d) < sk_same_f(SK_STRAIGHT), sk_same_f(0.0f), d);
 }
 
+/** None of them is valid. */
+SK_FUNCTION sk_ray_lanes sk_no_rays_lanes(void) {
+    const sk_fN zero = sk_same_f(0.0f);
+    const sk_iN none = sk_same_i(0);
+    sk_ray_lanes r;
+    r.o = r.d = r.inverse = sk_make3_f(zero, zero, zero);
+    r.w0 = r.w1 = r.shift = r.tmin = r.tmax = r.sx = r.sy = r.sz = zero;
+    r.pre = r.scale = sk_same_f(1.0f);
+    r.along_x = r.along_y = r.valid = none;
+    return r;
+}
+
 /** The working rays of rays[at]. */
 SK_FUNCTION sk_ray_lanes sk_prepare_ray_lanes(sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
                                               sk_iN at) {
@@ -90,6 +102,7 @@ SK_FUNCTION sk_ray_lanes sk_prepare_ray_lanes(sk_trace_params params, SK_GLOBAL 
     r.tmax = way_on.d;
     r.valid = sk_finite_f(o.x) & sk_finite_f(o.y) & sk_finite_f(o.z) & sk_finite_f(d.x) & sk_finite_f(d.y) &
               sk_finite_f(d.z) & (largest > sk_same_f(0.0f)) & (r.tmin <= r.tmax);
+    if (!sk_any_lane(r.valid)) return sk_no_rays_lanes();
     r.shift = sk_same_f(0.0f);
     r.pre = sk_select_f(largest < sk_same_f(0x1p-64f), sk_same_f(0x1p96f),
                         sk_select_f(largest > sk_same_f(0x1p64f), sk_same_f(0x1p-96f), sk_same_f(1.0f)));
