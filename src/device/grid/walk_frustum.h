@@ -16,8 +16,9 @@
 /** In cells: what a frustum is wider than its rays, and a slice thicker. Much more than rounding and the pad of the scene's box take. */
 #define SK_FRUSTUM_PAD 0.03125f
 #define SK_SLICE_PAD 0.125f
-/** The most cells across a frustum that is worth it, as a mean of both ends, and the most blocks that it may touch in one slab of them. */
-#define SK_FRUSTUM_CELLS 100.0f
+/** The most cells across a frustum that is worth it, for each of its flights and as a mean of both ends. */
+#define SK_FRUSTUM_CELLS 12.0f
+/** The most blocks that it may touch in one slab of them. */
 #define SK_FRUSTUM_BLOCKS 64u
 /** In cells: farther than any ray gets. */
 #define SK_BEYOND 1e9f
@@ -158,7 +159,7 @@ SK_FUNCTION int sk_make_frustum(SetkaGridHeader grid, const sk_flight* flights, 
     /* A slab of four slices moves a side by four cells at most, as slopes are up to 1. */
     const float most_x = sk_max(x0, x1) * 0.25f + 4.0f, most_y = sk_max(y0, y1) * 0.25f + 4.0f;
     return most_x * most_y <= (float)SK_FRUSTUM_BLOCKS &&
-           (x0 + 1.0f) * (y0 + 1.0f) + (x1 + 1.0f) * (y1 + 1.0f) <= 2.0f * SK_FRUSTUM_CELLS;
+           (x0 + 1.0f) * (y0 + 1.0f) + (x1 + 1.0f) * (y1 + 1.0f) <= 2.0f * SK_FRUSTUM_CELLS * (float)t->count;
 }
 
 /** Boxes of SK_WIDTH triangles, in the scene's units from the grid's origin on: the least and the greatest, z along the frustum's way. */
