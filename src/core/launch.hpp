@@ -39,13 +39,12 @@ void launch_items(Queue& queue, Kernel kernel, std::uint32_t items, const Ts&...
 }
 
 /// The same for a kernel that takes a second number, the first element (`n, first, …`), and does elements first to n - 1, `width`
-/// in each work-item. Where a stop can be requested, at most `most` a launch. Groups shrink with what a work-item does beyond the device's
-/// width, so that a batch has as many groups as ever to spread over the cores.
+/// in each work-item. Where a stop can be requested, at most `most` a launch. Groups shrink with what a work-item does, as PoCL hands a core
+/// up to 256 of them at once.
 template <typename... Ts>
 void launch_wide_range(Queue& queue, Kernel kernel, std::uint32_t items, std::uint32_t width, std::uint64_t most,
                        const Ts&... arguments) {
-    const std::uint32_t vectors = std::max(1u, width / queue.device().impl()->width());
-    const std::uint32_t group_size = std::max(1u, group_size_of(queue, kernel) / vectors);
+    const std::uint32_t group_size = std::max(1u, group_size_of(queue, kernel) / width);
     const std::uint64_t step = queue.impl().stop_token().stop_possible() ? std::max<std::uint64_t>(most, 1) : items;
     for (std::uint64_t first = 0; first < items; first += step) {
         const std::uint64_t end = std::min<std::uint64_t>(items, first + step);
