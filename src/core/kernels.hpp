@@ -3,6 +3,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+
+#include "device/trace/params.h"
 
 // Each name is an entry point in kernels_cl/ and in kernels_cu/.
 #define SETKA_KERNEL_LIST(X)                                                                               \
@@ -52,6 +55,12 @@ inline constexpr std::size_t kernel_count = sizeof(kernel_names) / sizeof(kernel
 [[nodiscard]] constexpr bool is_team_kernel(Kernel kernel) noexcept {
     return kernel == Kernel::trace_grid_closest_dda || kernel == Kernel::trace_grid_any_dda ||
            kernel == Kernel::trace_grid_cost_dda;
+}
+
+/// How many elements one work-item of a kernel does on a device of this width (SK_WIDTH in the dialect). Its groups have as many work-items fewer.
+[[nodiscard]] constexpr std::uint32_t elements_an_item(Kernel kernel, std::uint32_t width) noexcept {
+    const bool is_wide = kernel == Kernel::trace_grid_closest_dda || kernel == Kernel::trace_grid_any_dda;
+    return is_wide && width > 1 ? width * SK_FLIGHTS : 1;
 }
 
 }  // namespace setka

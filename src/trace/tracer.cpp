@@ -52,13 +52,6 @@ struct QueryKernels {
     Kernel brute_force, grid_dda, grid_branch_free;
 };
 
-/// How many rays one work-item of a kernel traces.
-std::uint32_t rays_an_item(const Device& device, Kernel kernel) {
-    const bool is_wide = kernel == Kernel::trace_grid_closest_dda || kernel == Kernel::trace_grid_any_dda;
-    const std::uint32_t width = device.impl()->width();
-    return is_wide && width > 1 ? width * SK_FLIGHTS : 1;
-}
-
 constexpr QueryKernels closest_kernels{Kernel::trace_brute_closest, Kernel::trace_grid_closest_dda,
                                        Kernel::trace_grid_closest_free};
 constexpr QueryKernels any_kernels{Kernel::trace_brute_any, Kernel::trace_grid_any_dda,
@@ -101,7 +94,7 @@ struct Query {
                     const auto& grid = static_cast<const Grid&>(structure);
                     const CompactTables& tables = grid.compact_tables();
                     const Kernel kernel = options.step == GridStep::Dda ? kernels.grid_dda : kernels.grid_branch_free;
-                    launch_wide_range(queue, kernel, n, rays_an_item(queue.device(), kernel), most, values...,
+                    launch_wide_range(queue, kernel, n, elements_an_item(kernel, queue.device().impl()->width()), most, values...,
                                       grid.header(), scene, batch.rays, batch.skip, particular..., tables.blocks,
                                       tables.cells, tables.references, geometry.triangles,
                                       geometry.instance_starts, geometry.instances);

@@ -130,8 +130,8 @@ DeviceCapabilities OpenClDevice::capabilities() const {
     guarded("asking for the kernels' limits", [&] {
         for (std::size_t i = 0; i < kernel_count; ++i) {
             if (team_size() > 1 && is_team_kernel(static_cast<Kernel>(i))) continue;
-            const cl::size_type limit =
-                cl::Kernel(program_, kernel_names[i]).getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device_);
+            const cl::size_type limit = cl::Kernel(program_, kernel_names[i]).getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device_) *
+                                        elements_an_item(static_cast<Kernel>(i), width());
             capabilities.kernel_work_group_size = static_cast<std::uint32_t>(
                 std::min<cl::size_type>(capabilities.kernel_work_group_size, limit));
         }
