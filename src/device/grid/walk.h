@@ -79,7 +79,8 @@ SK_FUNCTION sk_span sk_limit(sk_working_ray ray) {
     sk_span r;
     const float to_w = sk_inverse_power(ray.scale), pre = sk_inverse_power(ray.pre);
     const float a = (ray.tmin * to_w) * pre, b = (ray.tmax * to_w) * pre;
-    /* Where t is subnormal its rounding is absolute; in working parameters that may be much. */
+    /* Where t is subnormal its rounding is absolute; in working parameters that may be much. 2^-149 would be enough, but products with
+     * subnormal numbers are slow on some processors. */
     const float step = 0x1p-100f * pre, coarse = step + step * to_w;
     const float start = (a - ray.shift) - ((sk_abs(a) + sk_abs(ray.shift)) * 0x1p-20f + coarse);
     const float end = (b - ray.shift) + ((sk_abs(b) + sk_abs(ray.shift)) * 0x1p-20f + coarse);
