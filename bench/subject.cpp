@@ -13,9 +13,6 @@ namespace setka::bench {
 
 namespace {
 
-/// Whether kernels trace neighbours in a picture together.
-[[nodiscard]] bool device_traces_tiles(const Device& device) { return device.impl()->width() > 1; }
-
 /// The queries that no fingerprint covers: each ray has to be occluded exactly if it has a closest hit.
 void check_queries(Queue& queue, const Grid& grid, const workload::StandardRays& rays, GridStep step,
                    const std::string& who) {
@@ -48,7 +45,7 @@ Subject::Subject(Target& target, const SceneCase& name, const LoadedScene& loade
       scene_(queue_, loaded.scene) {
     use_density(golden_density);
     rays_ = workload::standard_rays(queue_, *grid_, view_, options.size);
-    if (device_traces_tiles(queue_.device()))
+    if (queue_.device().impl()->width() > 1)
         shadow_picture_ = queue_.upload(
             std::span<const Ray>(workload::in_places(queue_.download(rays_.shadow), rays_.pixels, rays_.primary.size())), "shadow rays");
     hits_ = queue_.make_buffer<Hit>(rays_.primary.size(), "hits");

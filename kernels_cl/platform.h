@@ -18,6 +18,8 @@
 #define SK_LOCAL_STORAGE __local
 #define SK_RESTRICT restrict
 #define SK_ALIGNED(bytes) __attribute__((aligned(bytes)))
+#define SK_PRAGMA(words) _Pragma(#words)
+#define SK_UNROLL(times) SK_PRAGMA(unroll times)
 #define SK_BARRIER() barrier(CLK_LOCAL_MEM_FENCE)
 
 /* Given by the host: 8 or 16 and 1 for CPUs, 1 and 32 for GPUs, else 1 and 1. No result depends on them. */
@@ -64,6 +66,7 @@ typedef ushort sk_u16;
 #define sk_atomic_max(p, v) atomic_max(p, v)
 #define sk_atomic_add(p, v) atomic_add(p, v)
 #define sk_atomic_or(p, v) atomic_or(p, v)
+#define sk_atomic_exchange(p, v) atomic_xchg(p, v)
 
 #if SK_WIDTH > 1
 typedef float4 sk_f4;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /** Entries of the tracers, one a structure, query and step; the bodies are in src/device/trace and src/device/grid. Those with
- * `first` do rays first to n - 1; trace_grid_closest_dda and trace_grid_any_dda SK_ITEM_RAYS a work-item, the others one. */
+ * `first` do rays first to n - 1; trace_grid_closest_dda and trace_grid_any_dda SK_ITEM_RAYS a work-item, the others one. Those of a
+ * picture take them tile by tile; where a work-item has many, the others do so too. */
 #include "platform.h"
 
 #include "device/grid/trace.h"
@@ -52,6 +53,22 @@ SK_TEAM_KERNEL void trace_grid_closest_dda(sk_u32 n, sk_u32 first, SetkaGridHead
                      sk_make_tables(blocks, cells, references, triangles, instance_starts, instances));
 }
 
+SK_TEAM_KERNEL void trace_grid_closest_picture(sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
+                                          SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
+                                          SK_GLOBAL SetkaHit* hits, SK_GLOBAL const sk_block* blocks,
+                                          SK_GLOBAL const sk_cell_list* cells, SK_GLOBAL const sk_u32* references,
+                                          SK_GLOBAL const float* triangles, SK_GLOBAL const sk_u32* instance_starts,
+                                          SK_GLOBAL const SetkaInstance* instances) {
+#if SK_WIDTH == 1
+    SK_SHARED_STORAGE sk_picture_team team;
+    sk_trace_closest_picture(&team, n, first + sk_global_id(), grid, params, rays, skip, hits,
+                        sk_make_tables(blocks, cells, references, triangles, instance_starts, instances));
+#else /* the other kernel does it */
+    (void)n, (void)first, (void)grid, (void)params, (void)rays, (void)skip, (void)hits, (void)blocks, (void)cells, (void)references, (void)triangles;
+    (void)instance_starts, (void)instances;
+#endif
+}
+
 SK_KERNEL void trace_grid_closest_free(sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
                                        SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
                                        SK_GLOBAL SetkaHit* hits, SK_GLOBAL const sk_block* blocks, SK_GLOBAL const sk_cell_list* cells,
@@ -79,6 +96,22 @@ SK_TEAM_KERNEL void trace_grid_any_dda(sk_u32 n, sk_u32 first, SetkaGridHeader g
     SK_SHARED_STORAGE sk_team team;
     sk_trace_any(&team, n, first + sk_global_id() * SK_ITEM_RAYS, grid, params, rays, skip, occluded,
                  sk_make_tables(blocks, cells, references, triangles, instance_starts, instances));
+}
+
+SK_TEAM_KERNEL void trace_grid_any_picture(sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
+                                          SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
+                                          SK_GLOBAL sk_u32* occluded, SK_GLOBAL const sk_block* blocks,
+                                          SK_GLOBAL const sk_cell_list* cells, SK_GLOBAL const sk_u32* references,
+                                          SK_GLOBAL const float* triangles, SK_GLOBAL const sk_u32* instance_starts,
+                                          SK_GLOBAL const SetkaInstance* instances) {
+#if SK_WIDTH == 1
+    SK_SHARED_STORAGE sk_picture_team team;
+    sk_trace_any_picture(&team, n, first + sk_global_id(), grid, params, rays, skip, occluded,
+                        sk_make_tables(blocks, cells, references, triangles, instance_starts, instances));
+#else /* the other kernel does it */
+    (void)n, (void)first, (void)grid, (void)params, (void)rays, (void)skip, (void)occluded, (void)blocks, (void)cells, (void)references, (void)triangles;
+    (void)instance_starts, (void)instances;
+#endif
 }
 
 SK_KERNEL void trace_grid_any_free(sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,

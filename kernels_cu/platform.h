@@ -10,6 +10,8 @@
 #define SK_LOCAL_STORAGE __shared__
 #define SK_RESTRICT __restrict__
 #define SK_ALIGNED(bytes) __align__(bytes)
+#define SK_PRAGMA(words) _Pragma(#words)
+#define SK_UNROLL(times) SK_PRAGMA(unroll times)
 #define SK_BARRIER() __syncthreads()
 
 #define SK_WIDTH 1u
@@ -39,5 +41,6 @@ typedef unsigned short sk_u16;
 #define sk_atomic_max(p, v) atomicMax(p, v)
 #define sk_atomic_add(p, v) atomicAdd(p, v)
 #define sk_atomic_or(p, v) atomicOr(p, v)
+#define sk_atomic_exchange(p, v) atomicExch(p, v)
 
 #endif

@@ -36,9 +36,9 @@ struct RayBatch {
     /// Empty, or one for each ray: rays[i] is traced as if the scene had no triangle skip[i], and nothing else is left out.
     /// For rays that start on a triangle. What names no triangle, as {SETKA_NO_HIT, SETKA_NO_HIT}, skips nothing.
     Buffer<Primitive> skip;
-    /// Of rays of a picture, row by row: how many a row has, width * samples_per_axis² for camera_rays(). On CPUs
-    /// the DDA step then traces closest and any hits of small tiles of the picture together, which is faster. Rays that are left out may stay in
-    /// place, with tmin > tmax. 0, or any other number: nothing but the time depends on it.
+    /// Of rays of a picture, row by row: how many a row has, width * samples_per_axis² for camera_rays(). The DDA step
+    /// then traces closest and any hits of small tiles of the picture together, which is faster where neighbours go much the same way. Rays that are left out
+    /// may stay in place, with tmin > tmax. 0, or any other number: nothing but the time depends on it.
     std::uint32_t row_length = 0;
 };
 

@@ -24,6 +24,7 @@
     X(import_blocks) X(import_cells) X(export_counts) X(export_offsets) X(lists_move) X(lists_move_long)   \
     X(trace_pack) X(trace_brute_closest) X(trace_brute_any)                                                \
     X(trace_grid_closest_dda) X(trace_grid_closest_free) X(trace_grid_any_dda) X(trace_grid_any_free)      \
+    X(trace_grid_closest_picture) X(trace_grid_any_picture)                                                \
     X(trace_grid_cost_dda) X(trace_grid_cost_free)                                                         \
     X(trace_brute_count) X(trace_brute_all) X(trace_grid_count) X(trace_grid_all)                          \
     X(shade_camera_rays) X(shade_surface) X(shade_shadow_rays) X(shade_shadow_narrow) X(shade_light)       \
@@ -54,6 +55,7 @@ inline constexpr std::size_t kernel_count = sizeof(kernel_names) / sizeof(kernel
 /// Kernels whose groups are teams (SK_TEAM_KERNEL in the dialect), not of the device's group size.
 [[nodiscard]] constexpr bool is_team_kernel(Kernel kernel) noexcept {
     return kernel == Kernel::trace_grid_closest_dda || kernel == Kernel::trace_grid_any_dda ||
+           kernel == Kernel::trace_grid_closest_picture || kernel == Kernel::trace_grid_any_picture ||
            kernel == Kernel::trace_grid_cost_dda;
 }
 

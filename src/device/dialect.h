@@ -16,6 +16,7 @@
  *   SK_TEAM                  how many work-items run in step: 1, or a power of two up to 32 (an integer for #if)
  *   SK_DOUBLE                whether there is `double`, of which + - * / and conversions are correctly rounded too: only what the host does
  *                            again and compares may depend on it (an integer for #if)
+ *   SK_UNROLL(times)         before a loop: how often its body is to be written out, 1 or 2
  *   SK_BARRIER()             all work-items of the group; orders local memory; in uniform control flow only
  *   sk_u32 sk_i32 sk_u64     integers; sk_u16 in tables only
  *   sk_global_id() sk_local_id() sk_group_id() sk_local_size()   as sk_u32
@@ -24,7 +25,7 @@
  *   sk_sqrt(f) sk_floor(f)                                       correctly rounded
  *   sk_popcount(u) sk_popcount_u64(u)                            how many bits of a sk_u32 or a sk_u64 are set
  *   sk_atomic_min(p, v) sk_atomic_max(p, v) sk_atomic_add(p, v)  on sk_u32 in global or local memory, return what was there;
- *   sk_atomic_or(p, v)                                           order-free uses only
+ *   sk_atomic_or(p, v) sk_atomic_exchange(p, v)                  order-free uses only
  *
  * Where SK_WIDTH is 8 or 16 (src/device/lanes.h), operators on vectors work on each element, comparisons give masks, scalars on one side
  * included, `mask ? a : b` with a mask of all bits or none, and:
@@ -46,7 +47,7 @@
 #define SETKA_DEVICE_DIALECT_H
 
 #if !defined(SK_KERNEL) || !defined(SK_TEAM_KERNEL) || !defined(SK_TEAM) || !defined(SK_FUNCTION) || !defined(SK_GLOBAL) || !defined(SK_LOCAL) || \
-    !defined(SK_LOCAL_STORAGE) || !defined(SK_RESTRICT) || !defined(SK_BARRIER) || !defined(SK_WIDTH) || !defined(SK_DOUBLE) || !defined(SK_ALIGNED)
+    !defined(SK_LOCAL_STORAGE) || !defined(SK_RESTRICT) || !defined(SK_BARRIER) || !defined(SK_UNROLL) || !defined(SK_WIDTH) || !defined(SK_DOUBLE) || !defined(SK_ALIGNED)
 #error "include a platform.h before dialect.h"
 #endif
 #if SK_TEAM > 32

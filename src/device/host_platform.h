@@ -27,6 +27,7 @@ static_assert(FLT_EVAL_METHOD == 0, "float expressions must be rounded to float 
 #define SK_LOCAL_STORAGE
 #define SK_RESTRICT __restrict
 #define SK_ALIGNED(bytes) alignas(bytes)
+#define SK_UNROLL(times)
 #define SK_BARRIER() ((void)0)
 
 #ifndef SK_WIDTH
@@ -102,6 +103,11 @@ static inline sk_u32 sk_atomic_max(sk_u32* target, sk_u32 value) {
 static inline sk_u32 sk_atomic_add(sk_u32* target, sk_u32 value) {
     const sk_u32 before = *target;
     *target = before + value;
+    return before;
+}
+static inline sk_u32 sk_atomic_exchange(sk_u32* target, sk_u32 value) {
+    const sk_u32 before = *target;
+    *target = value;
     return before;
 }
 static inline sk_u32 sk_atomic_or(sk_u32* target, sk_u32 value) {

@@ -50,12 +50,13 @@ std::uint64_t rays_a_launch(const Device& device, const Structure& structure) {
 /// Kernels of one query: one for each structure and step.
 struct QueryKernels {
     Kernel brute_force, grid_dda, grid_branch_free;
+    Kernel grid_picture = grid_dda;  ///< rays in tiles, with the DDA step; on CPUs' vectors it is the same as for others
 };
 
 constexpr QueryKernels closest_kernels{Kernel::trace_brute_closest, Kernel::trace_grid_closest_dda,
-                                       Kernel::trace_grid_closest_free};
+                                       Kernel::trace_grid_closest_free, Kernel::trace_grid_closest_picture};
 constexpr QueryKernels any_kernels{Kernel::trace_brute_any, Kernel::trace_grid_any_dda,
-                                   Kernel::trace_grid_any_free};
+                                   Kernel::trace_grid_any_free, Kernel::trace_grid_any_picture};
 constexpr QueryKernels count_kernels{Kernel::trace_brute_count, Kernel::trace_grid_count, Kernel::trace_grid_count};
 constexpr QueryKernels all_kernels{Kernel::trace_brute_all, Kernel::trace_grid_all, Kernel::trace_grid_all};
 
@@ -70,12 +71,15 @@ struct Query {
     [[nodiscard]] sk_trace_params params(const RayBatch& batch) const {
         sk_trace_params params = trace_params(structure.geometry(), options.mask);
         params.skips = batch.skip.empty() ? 0 : 1;
-        // A GPU's team of 32 shares the work of its rays anyway, and one whose rays all meet the same long lists ends last.
         const std::uint32_t row = batch.row_length;
-        if (row != 0 && queue.device().impl()->width() > 1) {
+        if (row != 0) {
             const auto n = static_cast<std::uint32_t>(batch.rays.size());
+            const std::uint32_t width = queue.device().impl()->width();
+            const std::uint32_t columns = (width > 1 ? width * SK_FLIGHTS : SK_BLOCK_RAYS_OF_TEAMS) / SK_BLOCK_ROWS;
             params.row_length = row;
-            params.tiled_rays = n - n % row - n / row % SK_ITEM_ROWS * row;
+            params.blocks_across = row / columns;
+            params.blocks_up = n / row / SK_BLOCK_ROWS;
+            params.tiled_rays = params.blocks_up * SK_BLOCK_ROWS * row;
         }
         return params;
     }
@@ -93,8 +97,10 @@ struct Query {
                 if (structure.kind() == StructureKind::UniformGrid) {
                     const auto& grid = static_cast<const Grid&>(structure);
                     const CompactTables& tables = grid.compact_tables();
-                    const Kernel kernel = options.step == GridStep::Dda ? kernels.grid_dda : kernels.grid_branch_free;
-                    launch_wide_range(queue, kernel, n, elements_an_item(kernel, queue.device().impl()->width()), most, values...,
+                    const std::uint32_t width = queue.device().impl()->width();
+                    const Kernel dda = scene.tiled_rays != 0 && width == 1 ? kernels.grid_picture : kernels.grid_dda;
+                    const Kernel kernel = options.step == GridStep::Dda ? dda : kernels.grid_branch_free;
+                    launch_wide_range(queue, kernel, n, elements_an_item(kernel, width), most, values...,
                                       grid.header(), scene, batch.rays, batch.skip, particular..., tables.blocks,
                                       tables.cells, tables.references, geometry.triangles,
                                       geometry.instance_starts, geometry.instances);

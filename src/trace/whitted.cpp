@@ -101,7 +101,9 @@ void WhittedPasses::add_lights(const RayBatch& batch, const Buffer<SkSurfacePoin
     if (lights_.empty()) return;
     const Buffer<Ray>& rays = batch.rays;
     const auto shadow_rays = queue_.make_buffer<Ray>(rays.size(), "shadow rays");
-    const RayBatch shadow_batch(shadow_rays, {}, batch.row_length);
+    // Rays that are left out are members of a team without work, so that teams are better off with rows, as they come.
+    const bool in_tiles = queue_.device().impl()->width() > 1;
+    const RayBatch shadow_batch(shadow_rays, {}, in_tiles ? batch.row_length : 0);
     const auto occluded = queue_.make_buffer<std::uint32_t>(rays.size(), "occlusion");
     const auto opaque = has_transparent_ ? queue_.make_buffer<std::uint32_t>(rays.size(), "opaque occlusion")
                                          : Buffer<std::uint32_t>();

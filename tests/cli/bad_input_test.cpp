@@ -76,9 +76,9 @@ TEST(BadInput, WidthThatNoKernelHas) {
     for (const auto& device : listed.at("devices"))
         if (device.at("platform").get<std::string>().starts_with("Portable Computing Language")) pocl = device.at("id");
     if (pocl.empty()) GTEST_SKIP() << "no PoCL";
-    for (const std::string width : {"5", "-8", "16 ", "0", "1e9"})
+    for (const std::string width : {"5", "-8", "16 ", "0", "1e9", "teams"})
         expect_one_clear_line(run({"build", "cube", "--device", pocl}, {{"SETKA_WIDTH", width}}),
-                              {"SETKA_WIDTH", "'" + width + "'", "16"});
+                              {"SETKA_WIDTH", "'" + width + "'", "16", "team"});
 }
 
 TEST(BadInput, NoDevice) {

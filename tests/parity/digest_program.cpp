@@ -103,6 +103,18 @@ class AllKernels {
         for (const auto step : {setka::GridStep::Dda, setka::GridStep::BranchFree})
             print_rays(name + (step == setka::GridStep::Dda ? " dda" : " branch_free"), grid,
                        setka::Tracer({.step = step}), rays);
+        print_bundles(name, grid, support::bundled_rays(oracle::make_world(scene), 4 * 128, 7));
+    }
+
+    /// Rays of a picture, of which a block is a bundle.
+    void print_bundles(const std::string& name, const setka::Grid& grid, const std::vector<setka::Ray>& rays) {
+        const setka::RayBatch batch(queue_.upload(std::span(rays), "rays"), {}, 16);
+        const auto hits = queue_.make_buffer<setka::Hit>(rays.size(), "hits");
+        const auto flags = queue_.make_buffer<std::uint32_t>(rays.size(), "flags");
+        setka::Tracer().closest_hit(queue_, grid, batch, hits);
+        setka::Tracer().any_hit(queue_, grid, batch, flags);
+        print_line(name + " bundles hits", hash(queue_.download(hits)));
+        print_line(name + " bundles any", hash(queue_.download(flags)));
     }
 
     /// A list so long that more than one work-item sorts and moves it.

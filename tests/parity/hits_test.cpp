@@ -84,7 +84,7 @@ TEST_P(Hits, OfBundlesEqualThoseOfBruteForce) {
     const auto flags = queue.make_buffer<std::uint32_t>(rays.size(), "flags");
     for (const float density : densities) {
         const auto grid = setka::make_grid_builder({.density = density})->build(queue, device_scene);
-        for (const std::uint32_t row : {0u, 64u}) {
+        for (const std::uint32_t row : {0u, 16u, 64u}) {  // in rows of 16 a bundle is a block of what is traced together
             SCOPED_TRACE("density " + std::to_string(density) + ", rows of " + std::to_string(row));
             batch.row_length = row;
             setka::Tracer().closest_hit(queue, grid, batch, hits);

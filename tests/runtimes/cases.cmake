@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # Do a test program's cases pass on a driver? Runs the cases FILTER of TESTS at SIZE (small or ordinary) on RUNTIME; PROGRAM lists
-# the devices. At least LEAST cases have to pass, and under Oclgrind there may be no report.
+# the devices. WIDTH, if given, is their SETKA_WIDTH. At least LEAST cases have to pass, and under Oclgrind there may be no report.
 cmake_minimum_required(VERSION 3.22)
 include(${CMAKE_CURRENT_LIST_DIR}/runtime.cmake)
 if(runtime_missing_why)
@@ -8,6 +8,9 @@ if(runtime_missing_why)
 endif()
 runtime_check_devices(${PROGRAM})
 get_filename_component(name ${TESTS} NAME)
+if(WIDTH)
+    list(APPEND runtime_environment SETKA_WIDTH=${WIDTH})
+endif()
 runtime_run(SETKA_TEST_SIZE=${SIZE} ${TESTS} --gtest_brief=1 "--gtest_filter=${FILTER}")
 runtime_missing_if_processor_is_unknown()
 if(NOT result EQUAL 0)

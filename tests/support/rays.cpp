@@ -264,13 +264,15 @@ std::vector<Ray> bundled_rays(const World& world, std::size_t count, std::uint64
     Ray leader{};
     float spread = 0;
     std::uint32_t moves = 0;
+    bool strangers = false;
     for (std::size_t i = 0; i < count; ++i) {
         if (i % bundle == 0) {
             leader = (maker.*kinds[i / bundle % std::size(kinds)].make)();
             spread = spreads[random.below(std::size(spreads))];
             moves = random.below(3) + 1;
+            strangers = random.below(2) == 0;
         }
-        if (random.below(16) == 0) rays.push_back((maker.*kinds[random.below(std::size(kinds))].make)());
+        if (strangers && random.below(16) == 0) rays.push_back((maker.*kinds[random.below(std::size(kinds))].make)());
         else rays.push_back(maker.neighbour(leader, spread, (moves & 1) != 0, (moves & 2) != 0));
     }
     return rays;

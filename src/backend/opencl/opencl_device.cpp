@@ -65,16 +65,26 @@ Error opencl_error(const std::string& what, const cl::Error& error) {
 
 namespace {
 
+/// What SETKA_WIDTH says to have CPUs run the walks of GPUs.
+constexpr const char* teams = "team";
+
 /// Eight floats fill a register of AVX, sixteen one of AVX-512. Only compilers that are known to cope: Mesa's rusticl cannot translate
 /// the reductions of vectors, and Oclgrind executes vectors no faster.
 std::uint32_t width_of(const cl::Device& device, const DeviceInfo& info) {
     const bool copes = info.platform.starts_with("Portable Computing Language") || info.platform.starts_with("Intel(R)");
     if (info.type != DeviceType::Cpu || !copes) return 1;
     const std::string& width = settings().width;
+    if (width == teams) return 1;
     if (width.empty()) return device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT>() >= 16 ? 16 : 8;
     if (width != "1" && width != "8" && width != "16")
-        throw Error(ErrorCategory::InvalidArgument, "SETKA_WIDTH is '" + width + "'; 1, 8 and 16 are accepted");
+        throw Error(ErrorCategory::InvalidArgument, "SETKA_WIDTH is '" + width + "'; 1, 8, 16 and team are accepted");
     return static_cast<std::uint32_t>(std::stoul(width));
+}
+
+/// GPUs run 32 or 64 work-items in step. A CPU's run one after the other, and would wait at each barrier for all of them.
+std::uint32_t team_of(const DeviceInfo& info) {
+    const bool in_step = info.type == DeviceType::Gpu || (info.type == DeviceType::Cpu && settings().width == teams);
+    return in_step && info.max_work_group_size >= 32 ? 32 : 1;
 }
 
 }  // namespace
@@ -84,6 +94,7 @@ OpenClDevice::OpenClDevice(cl::Device device, DeviceInfo info, const DeviceOptio
     guarded("opening " + info_.id, [&] {
         context_ = cl::Context(device_);
         width_ = width_of(device_, info_);
+        team_size_ = team_of(info_);
         has_doubles_ = device_.getInfo<CL_DEVICE_EXTENSIONS>().find("cl_khr_fp64") != std::string::npos;
     });
     build_program();

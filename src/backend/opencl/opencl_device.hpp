@@ -23,11 +23,7 @@ class OpenClDevice final : public Device {
     [[nodiscard]] std::shared_ptr<Queue> make_queue() override;
     void trim() override { pools_.clear(); }
     [[nodiscard]] std::uint32_t width() const noexcept override { return width_; }
-    /// GPUs run 32 or 64 work-items in step. A CPU's run one after the other, and would wait at each barrier for all of them.
-    [[nodiscard]] std::uint32_t team_size() const noexcept override {
-        return info_.type == DeviceType::Gpu && info_.max_work_group_size >= 32 ? 32 : 1;
-    }
-
+    [[nodiscard]] std::uint32_t team_size() const noexcept override { return team_size_; }
     [[nodiscard]] bool has_doubles() const noexcept override { return has_doubles_; }
 
     [[nodiscard]] const cl::Device& device() const noexcept { return device_; }
@@ -41,7 +37,7 @@ class OpenClDevice final : public Device {
     cl::Device device_;
     DeviceInfo info_;
     DeviceOptions options_;
-    std::uint32_t width_ = 1;
+    std::uint32_t width_ = 1, team_size_ = 1;
     bool has_doubles_ = false;
     cl::Context context_;
     cl::Program program_;

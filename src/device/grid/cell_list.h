@@ -44,7 +44,16 @@ SK_FUNCTION sk_cell_list sk_find_list(sk_grid_tables tables, sk_block block, sk_
     return tables.cells[block.first + sk_rank_of(block, bit)];
 }
 
-/** The best of `best` and the hit of a triangle that may be hit, unless it is `skip` or hidden. */
+/** The best of `best` and the hit of triangle `number`, which may be hit and of which this is the view, unless it is `skip` or hidden. */
+SK_FUNCTION sk_best sk_test_candidate_view(sk_grid_tables grid, sk_trace_params params, sk_working_ray ray, sk_view view, sk_u32 number,
+                                           sk_u32 skip, sk_best best) {
+    const sk_best hit = sk_test_view(ray, view, number, best);
+    const int counts = hit.triangle != best.triangle && number != skip &&
+                       sk_is_visible(params, grid.instance_starts, grid.instances, number);
+    return counts ? hit : best;
+}
+
+/** The same of one in the table. */
 SK_FUNCTION sk_best sk_test_candidate(sk_grid_tables grid, sk_trace_params params, sk_working_ray ray, sk_u32 number,
                                       sk_u32 skip, sk_best best) {
     const sk_best hit = sk_test_triangle(ray, grid.triangles, number * 9u, 1u, number, best);

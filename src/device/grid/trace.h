@@ -7,10 +7,11 @@
 #define SETKA_DEVICE_GRID_TRACE_H
 
 #include "device/grid/walk.h"
+#include "device/grid/walk_frustum_team.h"
+#include "device/trace/tiles.h"
 #if SK_WIDTH > 1
 #include "device/grid/walk_frustum.h"
 #include "device/grid/walk_lanes.h"
-#include "device/trace/tiles.h"
 #endif
 
 /** The rays of a work-item. */
@@ -20,21 +21,20 @@
 #define SK_ITEM_RAYS 1u
 #endif
 
-/** A ray and what it hit. */
-typedef struct sk_traced {
+/** A ray on its way, as a member of a team has it. */
+typedef struct sk_member_ray {
+    sk_u32 number, skip;
     sk_working_ray ray;
-    sk_walk walk;
-} sk_traced;
+} sk_member_ray;
 
-SK_FUNCTION sk_traced sk_trace_ray(SK_SHARED sk_team* team, sk_u32 n, sk_u32 i, SetkaGridHeader grid,
-                                   sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
-                                   SK_GLOBAL const SetkaPrimitive* skip, sk_grid_tables tables, const int any) {
-    const sk_u32 read = sk_min_u32(i, n - 1u);
-    const sk_u32 skipped = sk_skipped_triangle(params, tables.instance_starts, skip, read);
-    sk_traced r;
-    r.ray = sk_prepare_ray(params, rays[read]);
-    if (i >= n) r.ray.valid = 0;
-    r.walk = sk_walk_grid(team, sk_local_id() % SK_TEAM, grid, params, r.ray, tables, skipped, any);
+/** Ray `number`, or one that hits nothing. */
+SK_FUNCTION sk_member_ray sk_take_ray(sk_u32 number, int valid, sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
+                                      SK_GLOBAL const SetkaPrimitive* skip, sk_grid_tables tables) {
+    sk_member_ray r;
+    r.number = number;
+    r.skip = sk_skipped_triangle(params, tables.instance_starts, skip, number);
+    r.ray = sk_prepare_ray(params, rays[number]);
+    if (!valid) r.ray.valid = 0;
     return r;
 }
 
@@ -122,24 +122,65 @@ SK_FUNCTION void sk_trace_closest(SK_SHARED sk_team* team, sk_u32 n, sk_u32 i, S
                                   sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
                                   SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL SetkaHit* hits,
                                   sk_grid_tables tables) {
-    const sk_traced traced = sk_trace_ray(team, n, i, grid, params, rays, skip, tables, 0);
-    if (i < n) hits[i] = sk_make_hit(params, traced.ray, tables.instance_starts, traced.walk.best);
+    const sk_member_ray own = sk_take_ray(sk_min_u32(i, n - 1u), i < n, params, rays, skip, tables);
+    const sk_walk walk = sk_walk_grid(team, sk_local_id() % SK_TEAM, grid, params, own.ray, tables, own.skip, 0);
+    if (i < n) hits[i] = sk_make_hit(params, own.ray, tables.instance_starts, walk.best);
 }
 
 SK_FUNCTION void sk_trace_any(SK_SHARED sk_team* team, sk_u32 n, sk_u32 i, SetkaGridHeader grid, sk_trace_params params,
                               SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
                               SK_GLOBAL sk_u32* occluded, sk_grid_tables tables) {
-    const sk_traced traced = sk_trace_ray(team, n, i, grid, params, rays, skip, tables, 1);
-    if (i < n) occluded[i] = traced.walk.best.triangle != SETKA_NO_HIT ? 1u : 0u;
+    const sk_member_ray own = sk_take_ray(sk_min_u32(i, n - 1u), i < n, params, rays, skip, tables);
+    const sk_walk walk = sk_walk_grid(team, sk_local_id() % SK_TEAM, grid, params, own.ray, tables, own.skip, 1);
+    if (i < n) occluded[i] = walk.best.triangle != SETKA_NO_HIT ? 1u : 0u;
+}
+
+/** What a member's ray hits, of rays of a picture. */
+SK_FUNCTION sk_best sk_trace_in_picture(SK_SHARED sk_picture_team* team, SetkaGridHeader grid, sk_trace_params params, sk_member_ray own,
+                                        sk_grid_tables tables, const int any) {
+    const sk_u32 member = sk_local_id() % SK_TEAM;
+#if SK_TEAM == 32
+    const sk_span span = sk_limit(own.ray);
+    sk_beam beam;
+    sk_best r = sk_no_hit();
+    if (sk_make_beam(&team->beam, member, grid, own.ray, span, &beam)) {
+        if (beam.first <= beam.last)
+            r = sk_walk_beam(&team->beam, member, grid, params, own.ray, span, beam, tables, own.skip, any);
+    } else {
+        SK_TEAM_BARRIER(); /* the memory is put to another use */
+        r = sk_walk_grid(&team->walk, member, grid, params, own.ray, tables, own.skip, any).best;
+    }
+    return r;
+#else
+    return sk_walk_grid(&team->walk, member, grid, params, own.ray, tables, own.skip, any).best;
+#endif
+}
+
+SK_FUNCTION void sk_trace_closest_picture(SK_SHARED sk_picture_team* team, sk_u32 n, sk_u32 i, SetkaGridHeader grid,
+                                          sk_trace_params params, SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
+                                          SK_GLOBAL SetkaHit* hits, sk_grid_tables tables) {
+    const sk_member_ray own = sk_take_ray(sk_ray_at(params, sk_min_u32(i, n - 1u)), i < n, params, rays, skip, tables);
+    const sk_best best = sk_trace_in_picture(team, grid, params, own, tables, 0);
+    if (i < n) hits[own.number] = sk_make_hit(params, own.ray, tables.instance_starts, best);
+}
+
+SK_FUNCTION void sk_trace_any_picture(SK_SHARED sk_picture_team* team, sk_u32 n, sk_u32 i, SetkaGridHeader grid, sk_trace_params params,
+                                      SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL sk_u32* occluded,
+                                      sk_grid_tables tables) {
+    const sk_member_ray own = sk_take_ray(sk_ray_at(params, sk_min_u32(i, n - 1u)), i < n, params, rays, skip, tables);
+    const sk_best best = sk_trace_in_picture(team, grid, params, own, tables, 1);
+    if (i < n) occluded[own.number] = best.triangle != SETKA_NO_HIT ? 1u : 0u;
 }
 
 #endif
 
+/** What the walk of each ray alone costs. */
 SK_FUNCTION void sk_trace_cost(SK_SHARED sk_team* team, sk_u32 n, sk_u32 i, SetkaGridHeader grid, sk_trace_params params,
                                SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
                                SK_GLOBAL SetkaTraceCost* costs, sk_grid_tables tables) {
-    const sk_traced traced = sk_trace_ray(team, n, i, grid, params, rays, skip, tables, 0);
-    if (i < n) costs[i] = traced.walk.cost;
+    const sk_member_ray own = sk_take_ray(sk_min_u32(i, n - 1u), i < n, params, rays, skip, tables);
+    const sk_walk walk = sk_walk_grid(team, sk_local_id() % SK_TEAM, grid, params, own.ray, tables, own.skip, 0);
+    if (i < n) costs[i] = walk.cost;
 }
 
 #endif

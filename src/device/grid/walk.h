@@ -175,6 +175,9 @@ SK_FUNCTION sk_search sk_move_on(SetkaGridHeader grid, sk_grid_tables tables, sk
 #define SK_TEAM_BARRIER() SK_BARRIER()
 #define sk_team_add(target, value) sk_atomic_add(target, value)
 #define sk_team_or(target, value) sk_atomic_or(target, value)
+#define sk_team_min(target, value) sk_atomic_min(target, value)
+#define sk_team_max(target, value) sk_atomic_max(target, value)
+#define sk_team_exchange(target, value) sk_atomic_exchange(target, value)
 #else
 #define SK_SHARED
 #define SK_SHARED_STORAGE
@@ -199,27 +202,50 @@ typedef struct SK_ALIGNED(8) sk_part {
     sk_u32 first_and_owner; /* its first pair and, in the lowest 6 bits, the member whose ray it is */
 } sk_part;
 
+/** A round's row of pairs. Totals and starts are there twice, for this round and for the next. */
+typedef struct sk_round {
+    sk_part parts[SK_TEAM];
+    sk_u32 starts[2][SK_ROUND]; /* bit m: a part begins with pair m of this row */
+    sk_u32 totals[2];
+} sk_round;
+
 /**
  * What the members of a team share: SK_TEAM work-items that run in step. Each walks with a ray of its own, but the triangles of
  * all their lists are tested by all of them, one pair of ray and triangle each, since lists differ in length and most members would wait
- * for the one with the longest. Totals and starts are there twice, for this round and for the next.
+ * for the one with the longest.
  */
 typedef struct sk_team {
+    sk_round round;
     sk_viewpoint views[SK_TEAM];
-    sk_part parts[SK_TEAM];
-    sk_u32 starts[2][SK_ROUND];  /* bit m: a part begins with pair m of this row */
-    sk_u32 candidates[SK_TEAM];  /* bit k: the member's ray may hit triangle k of its part */
-    sk_u32 totals[2];
+    sk_u32 candidates[SK_TEAM]; /* bit k: the member's ray may hit triangle k of its part */
 } sk_team;
 
+/** Before the first round; behind this a barrier is needed. */
+SK_FUNCTION void sk_clear_rounds(SK_SHARED sk_round* round, sk_u32 member) {
+    for (sk_u32 row = member; row < SK_ROUND; row += SK_TEAM) {
+        round->starts[0][row] = 0u;
+        round->starts[1][row] = 0u;
+    }
+    if (member == 0u) {
+        round->totals[0] = 0u;
+        round->totals[1] = 0u;
+    }
+}
+
+/** Makes room for the next round, behind the barrier that ends the offers to this one. */
+SK_FUNCTION void sk_clear_next_round(SK_SHARED sk_round* round, sk_u32 phase, sk_u32 member) {
+    if (member == 0u) round->totals[phase ^ 1u] = 0u;
+    for (sk_u32 row = member; row < SK_FIRST_ROWS; row += SK_TEAM) round->starts[phase ^ 1u][row] = 0u;
+}
+
 /** Puts `count` triangles of a list into the round's row, or says only that the member walks on. */
-SK_FUNCTION void sk_offer(SK_SHARED sk_team* team, sk_u32 phase, sk_u32 member, sk_u32 offset, sk_u32 count) {
-    const sk_u32 before = sk_team_add(&team->totals[phase], count == 0u ? SK_WITHOUT_LIST : SK_WITH_LIST + count);
+SK_FUNCTION void sk_offer(SK_SHARED sk_round* round, sk_u32 phase, sk_u32 member, sk_u32 offset, sk_u32 count) {
+    const sk_u32 before = sk_team_add(&round->totals[phase], count == 0u ? SK_WITHOUT_LIST : SK_WITH_LIST + count);
     if (count != 0u) {
         const sk_u32 part = SK_LISTS_OF(before), first = SK_PAIRS_OF(before);
-        sk_team_or(&team->starts[phase][first / SK_TEAM], 1u << first % SK_TEAM);
-        team->parts[part].shift = offset - first;
-        team->parts[part].first_and_owner = first << 6 | member;
+        sk_team_or(&round->starts[phase][first / SK_TEAM], 1u << first % SK_TEAM);
+        round->parts[part].shift = offset - first;
+        round->parts[part].first_and_owner = first << 6 | member;
     }
 }
 
@@ -229,8 +255,8 @@ typedef struct sk_ray_and_triangle {
 } sk_ray_and_triangle;
 
 /** Pair p, which is one of part `index`. */
-SK_FUNCTION sk_ray_and_triangle sk_find_pair(SK_SHARED sk_team* team, sk_grid_tables tables, sk_u32 p, sk_u32 index) {
-    const sk_part part = team->parts[index];
+SK_FUNCTION sk_ray_and_triangle sk_find_pair(SK_SHARED sk_round* round, sk_grid_tables tables, sk_u32 p, sk_u32 index) {
+    const sk_part part = round->parts[index];
     sk_ray_and_triangle r;
     r.owner = part.first_and_owner & 63u;
     r.number = tables.references[part.shift + p];
@@ -249,16 +275,16 @@ SK_FUNCTION void sk_test_pair(SK_SHARED sk_team* team, sk_grid_tables tables, sk
  */
 SK_FUNCTION void sk_test_pairs(SK_SHARED sk_team* team, sk_u32 phase, sk_u32 member, sk_u32 count, sk_grid_tables tables) {
     const sk_u32 upto = 0xffffffffu >> (31u - member); /* this member's bit and those before */
-    sk_u32 row = 0u, starts = team->starts[phase][0], begun = 0u; /* in the rows before */
+    sk_u32 row = 0u, starts = team->round.starts[phase][0], begun = 0u; /* in the rows before */
     if (member < count) {
-        sk_ray_and_triangle next = sk_find_pair(team, tables, member, sk_popcount(starts & upto) - 1u);
+        sk_ray_and_triangle next = sk_find_pair(&team->round, tables, member, sk_popcount(starts & upto) - 1u);
         for (sk_u32 p = member; p < count; p += SK_TEAM) {
             const sk_ray_and_triangle pair = next;
             if (p + SK_TEAM < count) {
                 begun += sk_popcount(starts);
                 row += 1u;
-                starts = team->starts[phase][row];
-                next = sk_find_pair(team, tables, p + SK_TEAM, begun + sk_popcount(starts & upto) - 1u);
+                starts = team->round.starts[phase][row];
+                next = sk_find_pair(&team->round, tables, p + SK_TEAM, begun + sk_popcount(starts & upto) - 1u);
             }
             sk_test_pair(team, tables, pair);
         }
@@ -285,14 +311,7 @@ SK_FUNCTION sk_walk sk_walk_grid(SK_SHARED sk_team* team, sk_u32 member, SetkaGr
     r.cost.steps = 0u;
     r.cost.tests = 0u;
     team->views[member] = sk_viewpoint_of(ray);
-    for (sk_u32 row = member; row < SK_ROUND; row += SK_TEAM) {
-        team->starts[0][row] = 0u;
-        team->starts[1][row] = 0u;
-    }
-    if (member == 0u) {
-        team->totals[0] = 0u;
-        team->totals[1] = 0u;
-    }
+    sk_clear_rounds(&team->round, member);
     SK_TEAM_BARRIER();
     do {
         if (search.list.count == 0u) {
@@ -303,12 +322,11 @@ SK_FUNCTION sk_walk sk_walk_grid(SK_SHARED sk_team* team, sk_u32 member, SetkaGr
             r.cost.tests += search.list.count;
         }
         const sk_u32 count = sk_min_u32(search.list.count, SK_ROUND);
-        if (search.at.walking) sk_offer(team, phase, member, search.list.offset, count);
+        if (search.at.walking) sk_offer(&team->round, phase, member, search.list.offset, count);
         team->candidates[member] = 0u;
         SK_TEAM_BARRIER();
-        total = team->totals[phase];
-        if (member == 0u) team->totals[phase ^ 1u] = 0u;
-        for (sk_u32 row = member; row < SK_FIRST_ROWS; row += SK_TEAM) team->starts[phase ^ 1u][row] = 0u;
+        total = team->round.totals[phase];
+        sk_clear_next_round(&team->round, phase, member);
         sk_test_pairs(team, phase, member, SK_PAIRS_OF(total), tables);
         SK_TEAM_BARRIER();
         /* The accurate test is long and few triangles come to it: each member does its own, the first of all of them together. */

@@ -5,17 +5,13 @@
  * in each that the frustum may touch (Wald, Ize, Kensler, Knoll & Parker 2006). No ray looks for its own cells. Each triangle is loaded once
  * for all rays, and asked first into which flights it reaches; their rays make the tests of triangle.h, so that the hits are the same: more
  * triangles are tested than those in a ray's own cells, but never less (src/README.md, "Traversal").
- *
- * Along the way things are measured in cells from the grid's origin on, mirrored for rays that go down, so that all frustums go up.
  */
 #ifndef SETKA_DEVICE_GRID_WALK_FRUSTUM_H
 #define SETKA_DEVICE_GRID_WALK_FRUSTUM_H
 
+#include "device/grid/frustum.h"
 #include "device/grid/walk_lanes.h"
 
-/** In cells: what a frustum is wider than its rays, and a slice thicker. Much more than rounding and the pad of the scene's box take. */
-#define SK_FRUSTUM_PAD 0.03125f
-#define SK_SLICE_PAD 0.125f
 /** The most cells across a frustum that is worth it, for each of its flights and as a mean of both ends. */
 #define SK_FRUSTUM_CELLS 12.0f
 /** The most blocks that it may touch in one slab of them. */
@@ -24,11 +20,6 @@
 #define SK_BEYOND 1e9f
 /** How many triangles a frustum remembers that it has tested, by their lowest bits. */
 #define SK_MAILBOX 1024u
-
-/** The sides of a frustum across one axis, as lines along its way: low + z * low_slope and high + z * high_slope. */
-typedef struct sk_flanks {
-    float low, low_slope, high, high_slope;
-} sk_flanks;
 
 typedef struct sk_frustum {
     sk_u32 kx, ky, kz; /* kz: the axis that it goes along */
@@ -65,23 +56,6 @@ SK_FUNCTION float sk_min_lane(sk_fN a) {
     return v[0];
 }
 SK_FUNCTION float sk_max_lane(sk_fN a) { return -sk_min_lane(-a); }
-
-/** From (low0, high0) at `start` to (low1, high1) after `length`: rays are straight, so none that is inside at both ends leaves between. */
-SK_FUNCTION sk_flanks sk_make_flanks(float low0, float high0, float low1, float high1, float start, float length) {
-    sk_flanks r;
-    r.low_slope = (low1 - low0) / length;
-    r.low = (low0 - start * r.low_slope) - SK_FRUSTUM_PAD;
-    r.high_slope = (high1 - high0) / length;
-    r.high = (high0 - start * r.high_slope) + SK_FRUSTUM_PAD;
-    return r;
-}
-
-SK_FUNCTION sk_flanks sk_scale_flanks(sk_flanks s, float cell_size) {
-    sk_flanks r = s;
-    r.low = s.low * cell_size;
-    r.high = s.high * cell_size;
-    return r;
-}
 
 /** The component of the rays along axis k. */
 SK_FUNCTION sk_fN sk_along(sk_vec3N a, sk_u32 k) { return k == 0u ? a.x : k == 1u ? a.y : a.z; }
@@ -127,7 +101,7 @@ SK_FUNCTION int sk_make_frustum(SetkaGridHeader grid, const sk_flight* flights, 
         t->flights[t->count] = number;
         t->count += 1u;
     }
-    const float start = sk_min_lane(starts) - SK_SLICE_PAD, length = sk_max(sk_last_of(t) - start, 1.0f);
+    const float start = sk_min_lane(starts) - SK_SLICE_PAD, length = sk_max(sk_last_of(t) - start, 1.0f), inverse_length = 1.0f / length;
     for (sk_u32 j = 0u; j < SK_FLIGHTS; ++j) {
         const sk_flight* const f = flights + t->flights[j < t->count ? j : 0u];
         const sk_fN to_start = start - (f->o.z - gz) * (inverse * t->sign);
@@ -149,12 +123,12 @@ SK_FUNCTION int sk_make_frustum(SetkaGridHeader grid, const sk_flight* flights, 
         for (sk_u32 j = 1u; j < t->count; ++j) all[i] = sk_min(all[i], least[i][j]);
     }
     for (sk_u32 j = 0u; j < t->count; ++j) {
-        t->flight_x[j] = sk_scale_flanks(sk_make_flanks(least[0][j], -least[1][j], least[4][j], -least[5][j], start, length), grid.cell_size);
-        t->flight_y[j] = sk_scale_flanks(sk_make_flanks(least[2][j], -least[3][j], least[6][j], -least[7][j], start, length), grid.cell_size);
+        t->flight_x[j] = sk_scale_flanks(sk_make_flanks(least[0][j], -least[1][j], least[4][j], -least[5][j], start, inverse_length), grid.cell_size);
+        t->flight_y[j] = sk_scale_flanks(sk_make_flanks(least[2][j], -least[3][j], least[6][j], -least[7][j], start, inverse_length), grid.cell_size);
     }
     t->start = start;
-    t->x = sk_make_flanks(all[0], -all[1], all[4], -all[5], start, length);
-    t->y = sk_make_flanks(all[2], -all[3], all[6], -all[7], start, length);
+    t->x = sk_make_flanks(all[0], -all[1], all[4], -all[5], start, inverse_length);
+    t->y = sk_make_flanks(all[2], -all[3], all[6], -all[7], start, inverse_length);
     const float x0 = -all[1] - all[0], x1 = -all[5] - all[4], y0 = -all[3] - all[2], y1 = -all[7] - all[6];
     /* A slab of four slices moves a side by four cells at most, as slopes are up to 1. */
     const float most_x = sk_max(x0, x1) * 0.25f + 4.0f, most_y = sk_max(y0, y1) * 0.25f + 4.0f;
@@ -258,19 +232,6 @@ SK_FUNCTION void sk_test_row(SetkaGridHeader grid, sk_grid_tables tables, sk_tra
     }
 }
 
-/** Cells first to last along an axis. */
-typedef struct sk_range {
-    sk_i32 first, last;
-} sk_range;
-
-/** Those between the flanks, from `from` to `to` along the way. */
-SK_FUNCTION sk_range sk_touched(sk_flanks s, float from, float to, sk_u32 dim) {
-    sk_range r;
-    r.first = (sk_i32)sk_cell(sk_min(s.low + from * s.low_slope, s.low + to * s.low_slope), dim);
-    r.last = (sk_i32)sk_cell(sk_max(s.high + from * s.high_slope, s.high + to * s.high_slope), dim);
-    return r;
-}
-
 /** The bits of a block's cells that are in the range along an axis; upto[k]: of those at 0 to k of it. */
 SK_FUNCTION sk_u64 sk_range_bits(sk_range cells, sk_i32 block, const sk_u64* upto) {
     const sk_i32 first = cells.first - block * 4, last = cells.last - block * 4;
@@ -295,9 +256,7 @@ typedef struct sk_slab {
 SK_FUNCTION void sk_meet_slab(SetkaGridHeader grid, sk_grid_tables tables, const sk_frustum* t, sk_i32 number, sk_range x, sk_range y,
                               sk_slab* slab) {
     const sk_dims dims = sk_block_dims(sk_cell_dims(grid));
-    const sk_u32 step_x = t->kx == 0u ? 1u : t->kx == 1u ? dims.x : dims.x * dims.y;
-    const sk_u32 step_y = t->ky == 0u ? 1u : t->ky == 1u ? dims.x : dims.x * dims.y;
-    const sk_u32 step_z = t->kz == 0u ? 1u : t->kz == 1u ? dims.x : dims.x * dims.y;
+    const sk_u32 step_x = sk_block_step(dims, t->kx), step_y = sk_block_step(dims, t->ky), step_z = sk_block_step(dims, t->kz);
     sk_u32 clearance = 15u;
     slab->count = 0u;
     for (sk_i32 by = y.first >> 2; by <= y.last >> 2; ++by)

@@ -17,15 +17,16 @@ typedef struct sk_trace_params {
     setka_u32 instance_count;
     setka_u32 triangle_count;
     setka_u32 row_length;     /* rays of a row, if tiled_rays is not 0 */
-    setka_u32 tiled_rays;     /* so many rays from the first on are traced tile by tile: whole rows of tiles */
+    setka_u32 tiled_rays;     /* so many rays from the first on are traced tile by tile: whole rows of blocks of tiles, */
+    setka_u32 blocks_across, blocks_up; /* as many of them a row, and as many rows */
 } sk_trace_params;
 
 /** How many vectors of SK_WIDTH rays a work-item of a CPU traces, if SK_WIDTH is more than 1 (grid/walk_lanes.h). */
 #define SK_FLIGHTS 8u
 
-/** Columns of a tile (tiles.h), which has SK_WIDTH rays: as many of each row. */
-#define SK_TILE_COLUMNS 4u
-/** Rows of a picture that a work-item of a CPU traces rays of, a tile for each of its vectors. */
-#define SK_ITEM_ROWS 8u
+/** Rows of a picture that are traced block by block (tiles.h). */
+#define SK_BLOCK_ROWS 8u
+/** The rays of a block where teams trace them. On CPUs it has those of a work-item. */
+#define SK_BLOCK_RAYS_OF_TEAMS 128u
 
 #endif

@@ -84,26 +84,54 @@ typedef struct sk_view {
     float a0, a1, a2, x0, x1, x2, y0, y1, y2;
 } sk_view;
 
+/** The vertices of a triangle along a ray's axes kx, ky and kz, and its number: 48 bytes, so that other work-items can read it from local memory. */
+typedef struct SK_ALIGNED(16) sk_corners {
+    float x0, x1, x2, y0, y1, y2, z0, z1, z2;
+    sk_u32 number, unused_0, unused_1;
+} sk_corners;
+
 /**
- * Vertex k has the components vertices[first + 3 * stride * k], vertices[first + 3 * stride * k + stride], …: stride 1 for packed
+ * Those of vertices[first + 3 * stride * k], vertices[first + 3 * stride * k + stride], … for vertex k: stride 1 for packed
  * triangles, more where triangles lie side by side.
  */
-SK_FUNCTION sk_view sk_view_triangle(sk_viewpoint from, SK_GLOBAL const float* vertices, sk_u32 first, sk_u32 stride) {
-    SK_GLOBAL const float* x = vertices + (first + from.kx * stride);
-    SK_GLOBAL const float* y = vertices + (first + from.ky * stride);
-    SK_GLOBAL const float* z = vertices + (first + from.kz * stride);
+SK_FUNCTION sk_corners sk_load_corners(sk_u32 kx, sk_u32 ky, sk_u32 kz, SK_GLOBAL const float* vertices, sk_u32 first, sk_u32 stride) {
+    SK_GLOBAL const float* x = vertices + (first + kx * stride);
+    SK_GLOBAL const float* y = vertices + (first + ky * stride);
+    SK_GLOBAL const float* z = vertices + (first + kz * stride);
     const sk_u32 next = 3u * stride;
-    sk_view r;
-    r.a0 = z[0] - from.oz;
-    r.a1 = z[next] - from.oz;
-    r.a2 = z[2u * next] - from.oz;
-    r.x0 = (x[0] - from.ox) - from.sx * r.a0;
-    r.y0 = (y[0] - from.oy) - from.sy * r.a0;
-    r.x1 = (x[next] - from.ox) - from.sx * r.a1;
-    r.y1 = (y[next] - from.oy) - from.sy * r.a1;
-    r.x2 = (x[2u * next] - from.ox) - from.sx * r.a2;
-    r.y2 = (y[2u * next] - from.oy) - from.sy * r.a2;
+    sk_corners r;
+    r.x0 = x[0];
+    r.x1 = x[next];
+    r.x2 = x[2u * next];
+    r.y0 = y[0];
+    r.y1 = y[next];
+    r.y2 = y[2u * next];
+    r.z0 = z[0];
+    r.z1 = z[next];
+    r.z2 = z[2u * next];
+    r.number = SETKA_NO_HIT;
+    r.unused_0 = 0u;
+    r.unused_1 = 0u;
     return r;
+}
+
+SK_FUNCTION sk_view sk_view_corners(sk_viewpoint from, sk_corners c) {
+    sk_view r;
+    r.a0 = c.z0 - from.oz;
+    r.a1 = c.z1 - from.oz;
+    r.a2 = c.z2 - from.oz;
+    r.x0 = (c.x0 - from.ox) - from.sx * r.a0;
+    r.y0 = (c.y0 - from.oy) - from.sy * r.a0;
+    r.x1 = (c.x1 - from.ox) - from.sx * r.a1;
+    r.y1 = (c.y1 - from.oy) - from.sy * r.a1;
+    r.x2 = (c.x2 - from.ox) - from.sx * r.a2;
+    r.y2 = (c.y2 - from.oy) - from.sy * r.a2;
+    return r;
+}
+
+/** Vertices as for sk_load_corners. */
+SK_FUNCTION sk_view sk_view_triangle(sk_viewpoint from, SK_GLOBAL const float* vertices, sk_u32 first, sk_u32 stride) {
+    return sk_view_corners(from, sk_load_corners(from.kx, from.ky, from.kz, vertices, first, stride));
 }
 
 /** 0 if the ray passes beside the triangle, by plain edge functions, whose signs are never wrong. */
@@ -111,32 +139,37 @@ SK_FUNCTION int sk_may_pass(sk_view p) {
     return !sk_mixed_signs(p.x2 * p.y1 - p.y2 * p.x1, p.x0 * p.y2 - p.y0 * p.x2, p.x1 * p.y0 - p.y1 * p.x0);
 }
 
-/** The best of `best` and the hit of triangle `number`, with vertices as for sk_view_triangle. */
+/** The best of `best` and the hit of triangle `number`, of which this is the view; that it may be hit is known. */
+SK_FUNCTION sk_best sk_test_view(sk_working_ray ray, sk_view p, sk_u32 number, sk_best best) {
+    const float unit = ray.unit;
+    const float p0 = p.x0 * unit, p1 = p.x1 * unit, p2 = p.x2 * unit;
+    const float q0 = p.y0 * unit, q1 = p.y1 * unit, q2 = p.y2 * unit;
+    const float u = sk_accurate_difference(p2, q1, q2, p1);
+    const float v = sk_accurate_difference(p0, q2, q0, p2);
+    const float w = sk_accurate_difference(p1, q0, q1, p0);
+    const int side = sk_side(u, p1, q1, p2, q2);
+    sk_best r = best;
+    if (side != 0 && side == sk_side(v, p2, q2, p0, q0) && side == sk_side(w, p0, q0, p1, q1)) {
+        const float det = (u + v) + w;
+        const float at = ((u * (ray.sz * p.a0) + v * (ray.sz * p.a1)) + w * (ray.sz * p.a2)) / det;
+        const float t = sk_user_t(ray, at);
+        if (t >= ray.tmin && t <= ray.tmax && sk_is_finite(t) &&
+            (at < best.w || (at == best.w && number < best.triangle) || best.triangle == SETKA_NO_HIT)) {
+            r.w = at;
+            r.u = sk_positive_zero(v / det);
+            r.v = sk_positive_zero(w / det);
+            r.triangle = number;
+        }
+    }
+    return r;
+}
+
+/** The best of `best` and the hit of triangle `number`, with vertices as for sk_load_corners. */
 SK_FUNCTION sk_best sk_test_triangle(sk_working_ray ray, SK_GLOBAL const float* vertices, sk_u32 first, sk_u32 stride,
                                      sk_u32 number, sk_best best) {
     const sk_view p = sk_view_triangle(sk_viewpoint_of(ray), vertices, first, stride);
     sk_best r = best;
-    if (sk_may_pass(p)) {
-        const float unit = ray.unit;
-        const float p0 = p.x0 * unit, p1 = p.x1 * unit, p2 = p.x2 * unit;
-        const float q0 = p.y0 * unit, q1 = p.y1 * unit, q2 = p.y2 * unit;
-        const float u = sk_accurate_difference(p2, q1, q2, p1);
-        const float v = sk_accurate_difference(p0, q2, q0, p2);
-        const float w = sk_accurate_difference(p1, q0, q1, p0);
-        const int side = sk_side(u, p1, q1, p2, q2);
-        if (side != 0 && side == sk_side(v, p2, q2, p0, q0) && side == sk_side(w, p0, q0, p1, q1)) {
-            const float det = (u + v) + w;
-            const float at = ((u * (ray.sz * p.a0) + v * (ray.sz * p.a1)) + w * (ray.sz * p.a2)) / det;
-            const float t = sk_user_t(ray, at);
-            if (t >= ray.tmin && t <= ray.tmax && sk_is_finite(t) &&
-                (at < best.w || (at == best.w && number < best.triangle) || best.triangle == SETKA_NO_HIT)) {
-                r.w = at;
-                r.u = sk_positive_zero(v / det);
-                r.v = sk_positive_zero(w / det);
-                r.triangle = number;
-            }
-        }
-    }
+    if (sk_may_pass(p)) r = sk_test_view(ray, p, number, best);
     return r;
 }
 
