@@ -147,9 +147,6 @@ SK_FUNCTION sk_span_lanes sk_limit_lanes(sk_ray_lanes ray) {
     return r;
 }
 
-/** How many lists a flight remembers for each axis. */
-#define SK_KNOWN 32u
-
 /** SK_WIDTH rays on their way. */
 typedef struct sk_flight {
     sk_iN number; /* of the rays */
@@ -164,8 +161,6 @@ typedef struct sk_flight {
     sk_iN listed;               /* lanes that have come to a list, */
     sk_found_lanes found;       /* and where it is */
     sk_iN candidates, offset;   /* bit k: the lane's ray may hit triangle references[offset + k] */
-    /* Records of lists that all rays with one largest axis have been tested against, by their lowest bits. */
-    sk_u32 known[3][SK_KNOWN];
 } sk_flight;
 
 SK_FUNCTION void sk_take_off(sk_flight* f, sk_iN number, sk_ray_lanes ray, sk_iN skip) {
@@ -188,8 +183,6 @@ SK_FUNCTION void sk_enter_lanes(sk_flight* f, SetkaGridHeader grid) {
     f->at.y = sk_make_axis_lanes(grid, 1u, f->ray.o.y, f->ray.d.y, f->ray.inverse.y, f->start);
     f->at.z = sk_make_axis_lanes(grid, 2u, f->ray.o.z, f->ray.d.z, f->ray.inverse.z, f->start);
     f->at.cube = sk_same_i(0);
-    for (sk_u32 axis = 0u; axis < 3u; ++axis)
-        for (sk_u32 k = 0u; k < SK_KNOWN; ++k) f->known[axis][k] = 0xffffffffu; /* no record: each has a triangle */
 }
 
 /** The best of `best` and the hits of the triangles `number`; none where that is SETKA_NO_HIT. */
@@ -254,14 +247,8 @@ typedef struct sk_task {
     sk_u32 lanes; /* bits: who is to be tested, if walking and of this axis */
 } sk_task;
 
-#define SK_ALL_LANES 0xffffffffu
-
-/**
- * Adds the lists of flight `number` to `count` tasks; up to SK_WIDTH. Their number then. Rays that are `close` together meet the same lists sooner or
- * later: each list is tested once, for all that walk. For others the accurate tests that this brings on cost more than it saves.
- */
-SK_FUNCTION sk_u32 sk_add_tasks(sk_grid_tables tables, sk_flight* flights, sk_u32 number, int close, sk_task* tasks,
-                                sk_u32 count) {
+/** Adds the lists of flight `number` to `count` tasks; up to SK_WIDTH. Their number then. */
+SK_FUNCTION sk_u32 sk_add_tasks(sk_grid_tables tables, sk_flight* flights, sk_u32 number, sk_task* tasks, sk_u32 count) {
     sk_flight* const f = flights + number;
     const sk_iN all_records = sk_records_of(f->found);
     sk_u32 waiting = sk_lane_bits(f->listed);
@@ -273,13 +260,11 @@ SK_FUNCTION sk_u32 sk_add_tasks(sk_grid_tables tables, sk_flight* flights, sk_u3
     while (waiting != 0u) {
         const sk_u32 lane = sk_popcount((waiting - 1u) & ~waiting), record = (sk_u32)records[lane];
         const sk_u32 lanes = waiting & sk_lane_bits((all_records == records[lane]) & (f->kz == axes[lane]));
-        sk_u32* const known = &f->known[axes[lane]][record % SK_KNOWN];
         tasks[count].list = tables.cells[record];
         tasks[count].flight = number;
         tasks[count].kz = (sk_u32)axes[lane];
-        tasks[count].lanes = close ? SK_ALL_LANES : lanes;
-        count += *known != record ? 1u : 0u;
-        *known = close ? record : *known;
+        tasks[count].lanes = lanes;
+        count += 1u;
         waiting &= ~lanes;
     }
     return count;
@@ -339,7 +324,7 @@ SK_FUNCTION void sk_walk_grid_lanes(SetkaGridHeader grid, sk_trace_params params
             listed_count += sk_any_lane(f->listed) ? 1u : 0u;
         }
         for (sk_u32 k = 0u; k < listed_count; ++k)
-            task_count = sk_add_tasks(tables, flights, listed[k], params.tiled_rays != 0u, tasks, task_count);
+            task_count = sk_add_tasks(tables, flights, listed[k], tasks, task_count);
         for (sk_u32 k = 0u; k < task_count; ++k) sk_do_task(tables, params, flights, tasks[k]);
         for (sk_u32 k = 0u; k < listed_count; ++k) {
             hopeful[hopeful_count] = listed[k];
