@@ -93,6 +93,7 @@ typedef int8 sk_iN;
 #define sk_lanes_as_int(f) as_int8(f)
 #define sk_lanes_as_float(i) as_float8(i)
 #endif
+#define sk_prefetch(p) __builtin_prefetch(p)
 #define sk_load_f4(p) vload4(0, p)
 #define sk_store_f4(v, p) vstore4(v, 0, p)
 #define sk_same_f4(a) ((float4)(a))

@@ -64,6 +64,7 @@ typedef sk_i32 sk_iN __attribute__((vector_size(4 * SK_WIDTH)));
 #define sk_make_f(...) (sk_fN{__VA_ARGS__})
 #define sk_make_i(...) (sk_iN{__VA_ARGS__})
 #define sk_lane(v, k) ((v)[k])
+#define sk_prefetch(p) __builtin_prefetch(p)
 static inline sk_f4 sk_load_f4(const float* p) {
     sk_f4 r;
     std::memcpy(&r, p, sizeof r);

@@ -18,6 +18,8 @@
 #define SK_FRUSTUM_BLOCKS 64u
 /** In cells: farther than any ray gets. */
 #define SK_BEYOND 1e9f
+/** How many lists are looked up before the first is read. */
+#define SK_LISTS 32u
 /** How many triangles a frustum remembers that it has tested, by their lowest bits. */
 #define SK_MAILBOX 1024u
 
@@ -268,9 +270,38 @@ SK_FUNCTION void sk_meet_slab(SetkaGridHeader grid, sk_grid_tables tables, const
             next->x = bx;
             next->y = by;
             slab->count += next->cells != 0u ? 1u : 0u;
+            sk_prefetch(tables.cells + next->first);
             clearance = sk_min_u32(clearance, block.clearance);
         }
     slab->clearance = (sk_i32)((clearance + 4u) / 4u);
+}
+
+/** The cells of a slice whose lists are to be looked up. */
+typedef struct sk_cells_ahead {
+    sk_u64 slice; /* the bits of a block's cells that are in it */
+    sk_u32 next;  /* block of the slab, */
+    sk_u64 cells; /* and those of the one before that are left */
+} sk_cells_ahead;
+
+/** The next lists of a slice, up to SK_LISTS: how many. What they refer to is on its way before the first is read. */
+SK_FUNCTION sk_u32 sk_find_lists(sk_grid_tables tables, const sk_frustum* t, const sk_slab* slab, sk_range x, sk_range y, sk_u64 (*upto)[4],
+                                 sk_cells_ahead* ahead, sk_cell_list* lists) {
+    sk_u32 found = 0u;
+    while (found < SK_LISTS && (ahead->cells != 0u || ahead->next < slab->count)) {
+        if (ahead->cells == 0u) {
+            const sk_met_block block = slab->blocks[ahead->next];
+            ahead->cells = block.cells & ahead->slice & sk_range_bits(x, block.x, upto[t->kx]) & sk_range_bits(y, block.y, upto[t->ky]);
+            ahead->next += 1u;
+        } else {
+            const sk_met_block block = slab->blocks[ahead->next - 1u];
+            const sk_u64 before = ~ahead->cells & (ahead->cells - 1u);
+            lists[found] = tables.cells[block.first + sk_popcount_u64(block.cells & before)];
+            sk_prefetch(tables.references + lists[found].offset);
+            found += 1u;
+            ahead->cells &= ahead->cells - 1u;
+        }
+    }
+    return found;
 }
 
 /** Takes a frustum through the grid. The walk ends: each turn goes one slice on, or more. */
@@ -281,6 +312,7 @@ SK_FUNCTION void sk_walk_frustum(SetkaGridHeader grid, sk_trace_params params, s
     sk_u64 upto[3][4]; /* of each axis: the bits of a block's cells at 0 to k of it */
     sk_u32 mailbox[SK_MAILBOX], row[SK_ROUND + 1u];
     sk_slab slab;
+    sk_cell_list lists[SK_LISTS];
     for (sk_u32 k = 0u; k < SK_MAILBOX; ++k) mailbox[k] = SETKA_NO_HIT;
     for (sk_u32 axis = 0u; axis < 3u; ++axis) {
         const sk_u64 at_0 = axis == 0u ? 0x1111111111111111u : axis == 1u ? 0x000f000f000f000fu : 0xffffu;
@@ -301,16 +333,18 @@ SK_FUNCTION void sk_walk_frustum(SetkaGridHeader grid, sk_trace_params params, s
             sk_range z;
             z.first = z.last = (slice ^ t->flip) & 3;
             const sk_u64 in_slice = sk_range_bits(z, 0, upto[t->kz]);
-            for (sk_u32 b = 0u; b < slab.count; ++b) {
-                const sk_met_block block = slab.blocks[b];
-                sk_u64 bits = block.cells & in_slice & sk_range_bits(x, block.x, upto[t->kx]) & sk_range_bits(y, block.y, upto[t->ky]);
-                for (; bits != 0u; bits &= bits - 1u) {
-                    const sk_u64 before = ~bits & (bits - 1u);
-                    const sk_cell_list list = tables.cells[block.first + sk_popcount_u64(block.cells & before)];
-                    for (sk_u32 k = 0u; k < list.count; ++k) {
-                        const sk_u32 triangle = tables.references[list.offset + k], known = mailbox[triangle % SK_MAILBOX];
+            sk_cells_ahead ahead;
+            ahead.slice = in_slice;
+            ahead.next = 0u;
+            ahead.cells = 0u;
+            for (sk_u32 found = sk_find_lists(tables, t, &slab, x, y, upto, &ahead, lists); found != 0u;
+                 found = sk_find_lists(tables, t, &slab, x, y, upto, &ahead, lists)) {
+                for (sk_u32 l = 0u; l < found; ++l) {
+                    for (sk_u32 k = 0u; k < lists[l].count; ++k) {
+                        const sk_u32 triangle = tables.references[lists[l].offset + k], known = mailbox[triangle % SK_MAILBOX];
                         mailbox[triangle % SK_MAILBOX] = triangle;
                         row[count] = triangle;
+                        sk_prefetch(tables.triangles + (size_t)triangle * 9u);
                         count += known != triangle ? 1u : 0u;
                         if (count == SK_ROUND) {
                             sk_test_row(grid, tables, params, t, flights, row, count, first, any);

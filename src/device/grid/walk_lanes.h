@@ -261,6 +261,7 @@ SK_FUNCTION sk_u32 sk_add_tasks(sk_grid_tables tables, sk_flight* flights, sk_u3
         const sk_u32 lane = sk_popcount((waiting - 1u) & ~waiting), record = (sk_u32)records[lane];
         const sk_u32 lanes = waiting & sk_lane_bits((all_records == records[lane]) & (f->kz == axes[lane]));
         tasks[count].list = tables.cells[record];
+        sk_prefetch(tables.references + tasks[count].list.offset);
         tasks[count].flight = number;
         tasks[count].kz = (sk_u32)axes[lane];
         tasks[count].lanes = lanes;
@@ -268,6 +269,15 @@ SK_FUNCTION sk_u32 sk_add_tasks(sk_grid_tables tables, sk_flight* flights, sk_u3
         waiting &= ~lanes;
     }
     return count;
+}
+
+/** So many triangles are more than a core's own caches hold, so that it pays to ask for them ahead: 9 MB. */
+#define SK_FAR_TRIANGLES 0x40000u
+/** The tasks between the one that is done and the one whose triangles are asked for. */
+#define SK_TASKS_AHEAD 2u
+
+SK_FUNCTION void sk_prefetch_list(sk_grid_tables tables, sk_cell_list list) {
+    for (sk_u32 k = 0u; k < list.count && k < SK_ROUND; ++k) sk_prefetch(tables.triangles + (size_t)tables.references[list.offset + k] * 9u);
 }
 
 /**
@@ -325,7 +335,11 @@ SK_FUNCTION void sk_walk_grid_lanes(SetkaGridHeader grid, sk_trace_params params
         }
         for (sk_u32 k = 0u; k < listed_count; ++k)
             task_count = sk_add_tasks(tables, flights, listed[k], tasks, task_count);
-        for (sk_u32 k = 0u; k < task_count; ++k) sk_do_task(tables, params, flights, tasks[k]);
+        for (sk_u32 k = 0u; k < task_count; ++k) {
+            if (params.triangle_count >= SK_FAR_TRIANGLES && k + SK_TASKS_AHEAD < task_count)
+                sk_prefetch_list(tables, tasks[k + SK_TASKS_AHEAD].list);
+            sk_do_task(tables, params, flights, tasks[k]);
+        }
         for (sk_u32 k = 0u; k < listed_count; ++k) {
             hopeful[hopeful_count] = listed[k];
             hopeful_count += sk_any_lane(flights[listed[k]].candidates) ? 1u : 0u;
