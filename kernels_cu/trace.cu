@@ -59,9 +59,14 @@ SK_TEAM_KERNEL void trace_grid_closest_picture(sk_u32 n, sk_u32 first, SetkaGrid
                                           SK_GLOBAL const sk_cell_list* cells, SK_GLOBAL const sk_u32* references,
                                           SK_GLOBAL const float* triangles, SK_GLOBAL const sk_u32* instance_starts,
                                           SK_GLOBAL const SetkaInstance* instances) {
+#if SK_WIDTH == 1
     SK_SHARED_STORAGE sk_picture_team team;
     sk_trace_closest_picture(&team, n, first + sk_global_id(), grid, params, rays, skip, hits,
                         sk_make_tables(blocks, cells, references, triangles, instance_starts, instances));
+#else /* the other kernel does it */
+    (void)n, (void)first, (void)grid, (void)params, (void)rays, (void)skip, (void)hits, (void)blocks, (void)cells, (void)references, (void)triangles;
+    (void)instance_starts, (void)instances;
+#endif
 }
 
 SK_KERNEL void trace_grid_closest_free(sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
@@ -99,9 +104,14 @@ SK_TEAM_KERNEL void trace_grid_any_picture(sk_u32 n, sk_u32 first, SetkaGridHead
                                           SK_GLOBAL const sk_cell_list* cells, SK_GLOBAL const sk_u32* references,
                                           SK_GLOBAL const float* triangles, SK_GLOBAL const sk_u32* instance_starts,
                                           SK_GLOBAL const SetkaInstance* instances) {
+#if SK_WIDTH == 1
     SK_SHARED_STORAGE sk_picture_team team;
     sk_trace_any_picture(&team, n, first + sk_global_id(), grid, params, rays, skip, occluded,
                         sk_make_tables(blocks, cells, references, triangles, instance_starts, instances));
+#else /* the other kernel does it */
+    (void)n, (void)first, (void)grid, (void)params, (void)rays, (void)skip, (void)occluded, (void)blocks, (void)cells, (void)references, (void)triangles;
+    (void)instance_starts, (void)instances;
+#endif
 }
 
 SK_KERNEL void trace_grid_any_free(sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,

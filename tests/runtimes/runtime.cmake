@@ -106,6 +106,7 @@ endfunction()
 # holds no more than the last context's reports.) Lines of SETKA_LOG are not its.
 function(runtime_check_oclgrind_reports)
     string(REGEX REPLACE "setka: [^\n]*\n" "" reports "${error}")
+    string(STRIP "${reports}" reports)  # an empty build log leaves empty lines
     if(NOT reports STREQUAL "")
         string(SUBSTRING "${reports}" 0 4000 reports)
         message(FATAL_ERROR "Oclgrind reports:\n${reports}")

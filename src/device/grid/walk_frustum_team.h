@@ -16,7 +16,7 @@
 
 /** The most cells across a frustum of a team that is worth it, as a mean of both ends. */
 #define SK_TEAM_CELLS 8.0f
-/** Added to numbers of slices, which are above -4096, where they are unsigned. */
+/** Added to numbers of slices, which are -4096 or more, where they are unsigned. */
 #define SK_SLICE_BIAS 8192
 
 /** How many triangles a beam remembers that it has met, by their lowest bits. */
