@@ -74,6 +74,25 @@ macro(runtime_run)
                     OUTPUT_VARIABLE output ERROR_VARIABLE error RESULT_VARIABLE result)
 endmacro()
 
+# Has the commands from here on use kernels of WIDTH, if that is given: a SETKA_WIDTH.
+macro(runtime_use_width)
+    if(WIDTH)
+        list(APPEND runtime_environment SETKA_WIDTH=${WIDTH} SETKA_LOG=build,launch)
+    endif()
+endmacro()
+
+# Fails unless the command's kernels were those.
+macro(runtime_check_width)
+    if("${WIDTH}" STREQUAL "team")
+        set(asked_for "-DSK_TEAM=32")
+    else()
+        set(asked_for "-DSK_WIDTH=${WIDTH}u")
+    endif()
+    if(WIDTH AND NOT error MATCHES "${asked_for}")
+        message(FATAL_ERROR "${RUNTIME} was not asked for kernels of width ${WIDTH}:\n${error}")
+    endif()
+endmacro()
+
 # Ends the test if the command failed because the driver's compiler is older than this machine's processor: LLVM then calls it
 # "generic", which Clang refuses for any program of anyone. (Our build options name no processor.)
 macro(runtime_missing_if_processor_is_unknown)

@@ -53,7 +53,10 @@ SK_FUNCTION sk_best sk_test_candidate_view(sk_grid_tables grid, sk_trace_params 
     return counts ? hit : best;
 }
 
-/** The same of one in the table. */
+/**
+ * The same of one in the table. It asks once more whether the triangle may be hit, and is written out: without that the walks of teams
+ * need more registers (0.94 of the rate of diffuse rays on an H200).
+ */
 SK_FUNCTION sk_best sk_test_candidate(sk_grid_tables grid, sk_trace_params params, sk_working_ray ray, sk_u32 number,
                                       sk_u32 skip, sk_best best) {
     const sk_best hit = sk_test_triangle(ray, grid.triangles, number * 9u, 1u, number, best);

@@ -16,6 +16,9 @@
 #define SK_FRUSTUM_PAD 0.03125f
 #define SK_SLICE_PAD 0.125f
 
+/** In cells: farther than any ray gets. */
+#define SK_BEYOND 1e9f
+
 /** The sides of a frustum across one axis, as lines along its way: low + z * low_slope and high + z * high_slope. */
 typedef struct sk_flanks {
     float low, low_slope, high, high_slope;

@@ -16,8 +16,6 @@
 #define SK_FRUSTUM_CELLS 12.0f
 /** The most blocks that it may touch in one slab of them. */
 #define SK_FRUSTUM_BLOCKS 64u
-/** In cells: farther than any ray gets. */
-#define SK_BEYOND 1e9f
 /** How many lists are looked up before the first is read. */
 #define SK_LISTS 32u
 /** How many triangles a frustum remembers that it has tested, by their lowest bits. */
@@ -337,8 +335,9 @@ SK_FUNCTION void sk_walk_frustum(SetkaGridHeader grid, sk_trace_params params, s
             ahead.slice = in_slice;
             ahead.next = 0u;
             ahead.cells = 0u;
-            for (sk_u32 found = sk_find_lists(tables, t, &slab, x, y, upto, &ahead, lists); found != 0u;
-                 found = sk_find_lists(tables, t, &slab, x, y, upto, &ahead, lists)) {
+            sk_u32 found;
+            do {
+                found = sk_find_lists(tables, t, &slab, x, y, upto, &ahead, lists);
                 for (sk_u32 l = 0u; l < found; ++l) {
                     for (sk_u32 k = 0u; k < lists[l].count; ++k) {
                         const sk_u32 triangle = tables.references[lists[l].offset + k], known = mailbox[triangle % SK_MAILBOX];
@@ -353,7 +352,7 @@ SK_FUNCTION void sk_walk_frustum(SetkaGridHeader grid, sk_trace_params params, s
                         }
                     }
                 }
-            }
+            } while (found != 0u);
         }
         if (count != 0u) sk_test_row(grid, tables, params, t, flights, row, count, first, any);
         last = sk_last_of(t);

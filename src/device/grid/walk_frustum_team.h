@@ -130,18 +130,18 @@ SK_FUNCTION int sk_make_beam(SK_SHARED sk_beam_team* team, sk_u32 member, SetkaG
     } else {
         const float start = (float)t->first - SK_SLICE_PAD, length = (float)(t->last + 1) + SK_SLICE_PAD - start;
         const float to_start = start - sk_way_to(grid, ray.kz, t->flip, ray.oz), turn = t->flip != 0 ? -1.0f : 1.0f;
-        const float sx = ray.sx * turn, sy = ray.sy * turn, beyond = 1e9f;
+        const float sx = ray.sx * turn, sy = ray.sy * turn;
         const float x0 = (ray.ox - sk_origin_of(grid, ray.kx)) * grid.inverse_cell_size + to_start * sx, x1 = x0 + length * sx;
         const float y0 = (ray.oy - sk_origin_of(grid, ray.ky)) * grid.inverse_cell_size + to_start * sy, y1 = y0 + length * sy;
         float least[8];
-        team->of.sides[0][member] = span.meets ? x0 : beyond;
-        team->of.sides[1][member] = span.meets ? -x0 : beyond;
-        team->of.sides[2][member] = span.meets ? y0 : beyond;
-        team->of.sides[3][member] = span.meets ? -y0 : beyond;
-        team->of.sides[4][member] = span.meets ? x1 : beyond;
-        team->of.sides[5][member] = span.meets ? -x1 : beyond;
-        team->of.sides[6][member] = span.meets ? y1 : beyond;
-        team->of.sides[7][member] = span.meets ? -y1 : beyond;
+        team->of.sides[0][member] = span.meets ? x0 : SK_BEYOND;
+        team->of.sides[1][member] = span.meets ? -x0 : SK_BEYOND;
+        team->of.sides[2][member] = span.meets ? y0 : SK_BEYOND;
+        team->of.sides[3][member] = span.meets ? -y0 : SK_BEYOND;
+        team->of.sides[4][member] = span.meets ? x1 : SK_BEYOND;
+        team->of.sides[5][member] = span.meets ? -x1 : SK_BEYOND;
+        team->of.sides[6][member] = span.meets ? y1 : SK_BEYOND;
+        team->of.sides[7][member] = span.meets ? -y1 : SK_BEYOND;
         SK_TEAM_BARRIER();
         sk_least_of_sides(team, member, least);
         slim = (1.0f - least[1] - least[0]) * (1.0f - least[3] - least[2]) + (1.0f - least[5] - least[4]) * (1.0f - least[7] - least[6]) <=

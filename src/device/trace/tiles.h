@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /**
- * Which rays of a picture are traced side by side? They come row by row, but eight in a tile of 4 x 2, or sixteen in one of 4 x 4, meet more of the
- * same cells than as many in a line do. So places, which lanes take in order, go through tiles.
+ * Which rays of a picture are traced side by side? They come row by row, but eight in a tile of 4 x 2, sixteen in one of 4 x 4, or a team's 32 in
+ * one of 8 x 4, meet more of the same cells than as many in a line do. So places, which lanes and members take in order, go through tiles.
  */
 #ifndef SETKA_DEVICE_TRACE_TILES_H
 #define SETKA_DEVICE_TRACE_TILES_H
