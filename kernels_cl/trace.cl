@@ -49,7 +49,7 @@ SK_TEAM_KERNEL void trace_grid_closest_dda(sk_u32 n, sk_u32 first, SetkaGridHead
                                            SK_GLOBAL const sk_u32* instance_starts,
                                            SK_GLOBAL const SetkaInstance* instances) {
     SK_SHARED_STORAGE sk_team team;
-    sk_trace_closest(&team, n, first + sk_global_id() * SK_ITEM_RAYS, grid, params, rays, skip, hits,
+    sk_trace_closest(&team, n, first, grid, params, rays, skip, hits,
                      sk_make_tables(blocks, cells, references, triangles, instance_starts, instances));
 }
 
@@ -94,7 +94,7 @@ SK_TEAM_KERNEL void trace_grid_any_dda(sk_u32 n, sk_u32 first, SetkaGridHeader g
                                        SK_GLOBAL const sk_u32* instance_starts,
                                        SK_GLOBAL const SetkaInstance* instances) {
     SK_SHARED_STORAGE sk_team team;
-    sk_trace_any(&team, n, first + sk_global_id() * SK_ITEM_RAYS, grid, params, rays, skip, occluded,
+    sk_trace_any(&team, n, first, grid, params, rays, skip, occluded,
                  sk_make_tables(blocks, cells, references, triangles, instance_starts, instances));
 }
 

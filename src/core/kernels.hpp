@@ -59,10 +59,14 @@ inline constexpr std::size_t kernel_count = sizeof(kernel_names) / sizeof(kernel
            kernel == Kernel::trace_grid_cost_dda;
 }
 
+/// Kernels that trace a list of rays: on CPUs many in a work-item, on GPUs in teams of which the last may be halved (sk_trace_params.halved_teams).
+[[nodiscard]] constexpr bool traces_lists(Kernel kernel) noexcept {
+    return kernel == Kernel::trace_grid_closest_dda || kernel == Kernel::trace_grid_any_dda;
+}
+
 /// How many elements one work-item of a kernel does on a device of this width (SK_WIDTH in the dialect). Its groups have as many work-items fewer.
 [[nodiscard]] constexpr std::uint32_t elements_an_item(Kernel kernel, std::uint32_t width) noexcept {
-    const bool is_wide = kernel == Kernel::trace_grid_closest_dda || kernel == Kernel::trace_grid_any_dda;
-    return is_wide && width > 1 ? width * SK_FLIGHTS : 1;
+    return traces_lists(kernel) && width > 1 ? width * SK_FLIGHTS : 1;
 }
 
 }  // namespace setka

@@ -38,17 +38,23 @@ void launch_items(Queue& queue, Kernel kernel, std::uint32_t items, const Ts&...
     launch_enough(queue, kernel, items, group_size_of(queue, kernel), items, arguments...);
 }
 
-/// The same for a kernel that takes a second number, the first element (`n, first, …`), and does elements first to n - 1, `width`
-/// in each work-item. Where a stop can be requested, at most `most` a launch. Groups shrink with what a work-item does, as PoCL hands a core
-/// up to 256 of them at once.
+/// How the elements of a launch are shared out.
+struct Shares {
+    std::uint32_t an_item = 1;         ///< a work-item has so many
+    std::uint32_t halved_groups = 0;   ///< so many of the last groups are two, with half of the elements each
+};
+
+/// The same for a kernel that takes a second number, the first element (`n, first, …`), and does elements first to n - 1. Where a stop can be
+/// requested, at most `most` a launch. Groups shrink with what a work-item does, as PoCL hands a core up to 256 of them at once.
 template <typename... Ts>
-void launch_wide_range(Queue& queue, Kernel kernel, std::uint32_t items, std::uint32_t width, std::uint64_t most,
-                       const Ts&... arguments) {
-    const std::uint32_t group_size = std::max(1u, group_size_of(queue, kernel) / width);
+void launch_shares(Queue& queue, Kernel kernel, std::uint32_t items, Shares shares, std::uint64_t most, const Ts&... arguments) {
+    const std::uint32_t group_size = std::max(1u, group_size_of(queue, kernel) / shares.an_item);
     const std::uint64_t step = queue.impl().stop_token().stop_possible() ? std::max<std::uint64_t>(most, 1) : items;
+    const std::uint64_t a_group = std::uint64_t(group_size) * shares.an_item;
     for (std::uint64_t first = 0; first < items; first += step) {
         const std::uint64_t end = std::min<std::uint64_t>(items, first + step);
-        launch_enough(queue, kernel, static_cast<std::uint32_t>((end - first + width - 1) / width), group_size,
+        const auto groups = static_cast<std::uint32_t>((end - first + a_group - 1) / a_group);
+        launch_groups(queue, kernel, groups + std::min(groups, shares.halved_groups), group_size,
                       static_cast<std::uint32_t>(end), static_cast<std::uint32_t>(first), arguments...);
     }
 }
@@ -56,7 +62,7 @@ void launch_wide_range(Queue& queue, Kernel kernel, std::uint32_t items, std::ui
 /// The same with one element in each work-item.
 template <typename... Ts>
 void launch_range(Queue& queue, Kernel kernel, std::uint32_t items, std::uint64_t most, const Ts&... arguments) {
-    launch_wide_range(queue, kernel, items, 1, most, arguments...);
+    launch_shares(queue, kernel, items, {}, most, arguments...);
 }
 
 }  // namespace setka

@@ -84,13 +84,19 @@ struct Query {
         return params;
     }
 
+    /// How many of a kernel's last teams are halved, if it can have such: on an H200, which has 28 a compute unit at once, half of those.
+    [[nodiscard]] std::uint32_t halved_teams(Kernel kernel) const {
+        const Device& device = queue.device();
+        return traces_lists(kernel) && device.impl()->team_size() > 1 ? device.info().compute_units * 14 : 0;
+    }
+
     /// `first` are the plain values.
     template <typename... First, typename... Particular>
     void launch(const QueryKernels& kernels, const RayBatch& batch, const std::tuple<First...>& first,
                 const Particular&... particular) const {
         const auto n = static_cast<std::uint32_t>(batch.rays.size());
         const WorldGeometry& geometry = structure.geometry();
-        const sk_trace_params scene = params(batch);
+        sk_trace_params scene = params(batch);
         const std::uint64_t most = rays_a_launch(queue.device(), structure);
         std::apply(
             [&](const First&... values) {
@@ -100,10 +106,11 @@ struct Query {
                     const std::uint32_t width = queue.device().impl()->width();
                     const Kernel dda = scene.tiled_rays != 0 && width == 1 ? kernels.grid_picture : kernels.grid_dda;
                     const Kernel kernel = options.step == GridStep::Dda ? dda : kernels.grid_branch_free;
-                    launch_wide_range(queue, kernel, n, elements_an_item(kernel, width), most, values...,
-                                      grid.header(), scene, batch.rays, batch.skip, particular..., tables.blocks,
-                                      tables.cells, tables.references, geometry.triangles,
-                                      geometry.instance_starts, geometry.instances);
+                    scene.halved_teams = halved_teams(kernel);
+                    launch_shares(queue, kernel, n, {elements_an_item(kernel, width), scene.halved_teams}, most, values...,
+                                  grid.header(), scene, batch.rays, batch.skip, particular..., tables.blocks,
+                                  tables.cells, tables.references, geometry.triangles,
+                                  geometry.instance_starts, geometry.instances);
                 } else {
                     const auto& brute_force = static_cast<const BruteForce&>(structure);
                     launch_range(queue, kernels.brute_force, n, most, values..., scene, batch.rays, batch.skip,

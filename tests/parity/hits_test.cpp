@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stop_token>
 
 #include "setka/error.hpp"
 #include "support/compare.hpp"
@@ -125,6 +126,24 @@ TEST_P(Rays, OfAnyNumber) {
     for (const std::size_t count : {0u, 1u, 63u, 64u, 65u, 255u, 257u, 4099u}) {
         const auto rays = support::adversarial_rays(world, count, 44);
         const auto expected = oracle::closest_hits(world, rays);
+        EXPECT_TRUE(support::same_hits(rays, expected, setka::Tracer().closest_hit(queue, grid, rays)));
+        EXPECT_TRUE(support::same_occlusion(rays, expected, setka::Tracer().any_hit(queue, grid, rays)));
+    }
+}
+
+/// Batches so large that a launch has whole teams and halved ones, and that a queue which may be stopped traces in several launches.
+TEST_P(Rays, OfManyInSeveralLaunches) {
+    setka::Queue queue = device().make_queue();
+    const setka::Scene host_scene = support::ball(200);
+    const setka::DeviceScene device_scene(queue, host_scene);
+    const auto grid = setka::make_grid_builder()->build(queue, device_scene);
+    const std::size_t a_launch = device().info().type == setka::DeviceType::Cpu ? 1u << 17 : 1u << 20;
+    const auto rays = support::adversarial_rays(oracle::make_world(host_scene), a_launch + 70001, 46);
+    const auto expected = setka::Tracer({.step = setka::GridStep::BranchFree}).closest_hit(queue, grid, rays);
+    const std::stop_source stop;
+    for (const bool stoppable : {false, true}) {
+        SCOPED_TRACE(stoppable ? "in parts" : "at once");
+        queue.set_stop_token(stoppable ? stop.get_token() : std::stop_token());
         EXPECT_TRUE(support::same_hits(rays, expected, setka::Tracer().closest_hit(queue, grid, rays)));
         EXPECT_TRUE(support::same_occlusion(rays, expected, setka::Tracer().any_hit(queue, grid, rays)));
     }

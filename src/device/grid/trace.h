@@ -91,20 +91,22 @@ SK_FUNCTION void sk_write_hits(const sk_flight* f, sk_u32 count, sk_trace_params
     }
 }
 
-SK_FUNCTION void sk_trace_closest(SK_SHARED sk_team* team, sk_u32 n, sk_u32 i, SetkaGridHeader grid,
+SK_FUNCTION void sk_trace_closest(SK_SHARED sk_team* team, sk_u32 n, sk_u32 first, SetkaGridHeader grid,
                                   sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
                                   SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL SetkaHit* hits,
                                   sk_grid_tables tables) {
     sk_flight flights[SK_FLIGHTS];
+    const sk_u32 i = first + sk_global_id() * SK_ITEM_RAYS;
     const sk_u32 count = sk_trace_flights(flights, n, i, grid, params, rays, skip, tables, 0);
     (void)team;
     for (sk_u32 f = 0u; f < count; ++f) sk_write_hits(flights + f, sk_min_u32(n - (i + f * SK_WIDTH), SK_WIDTH), params, tables, hits);
 }
 
-SK_FUNCTION void sk_trace_any(SK_SHARED sk_team* team, sk_u32 n, sk_u32 i, SetkaGridHeader grid, sk_trace_params params,
+SK_FUNCTION void sk_trace_any(SK_SHARED sk_team* team, sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
                               SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
                               SK_GLOBAL sk_u32* occluded, sk_grid_tables tables) {
     sk_flight flights[SK_FLIGHTS];
+    const sk_u32 i = first + sk_global_id() * SK_ITEM_RAYS;
     const sk_u32 count = sk_trace_flights(flights, n, i, grid, params, rays, skip, tables, 1);
     (void)team;
     for (sk_u32 f = 0u; f < count; ++f) {
@@ -118,18 +120,36 @@ SK_FUNCTION void sk_trace_any(SK_SHARED sk_team* team, sk_u32 n, sk_u32 i, Setka
 
 #else
 
-SK_FUNCTION void sk_trace_closest(SK_SHARED sk_team* team, sk_u32 n, sk_u32 i, SetkaGridHeader grid,
+/**
+ * The place of a member's ray among rays `first` to n - 1 of a list, or n. What begins last should not be what ends last, so that the last teams are
+ * two, with half of the rays each, and end sooner: there is room for them on the device then.
+ */
+SK_FUNCTION sk_u32 sk_place_in_list(sk_trace_params params, sk_u32 n, sk_u32 first) {
+#if SK_TEAM > 1
+    const sk_u32 few = SK_TEAM / 2u, team = sk_group_id(), member = sk_local_id();
+    const sk_u32 teams = (n - first + SK_TEAM - 1u) / SK_TEAM, whole = teams - sk_min_u32(teams, params.halved_teams);
+    if (team < whole) return first + team * SK_TEAM + member;
+    return member < few ? first + whole * SK_TEAM + (team - whole) * few + member : n;
+#else
+    (void)params, (void)n;
+    return first + sk_global_id();
+#endif
+}
+
+SK_FUNCTION void sk_trace_closest(SK_SHARED sk_team* team, sk_u32 n, sk_u32 first, SetkaGridHeader grid,
                                   sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
                                   SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL SetkaHit* hits,
                                   sk_grid_tables tables) {
+    const sk_u32 i = sk_place_in_list(params, n, first);
     const sk_member_ray own = sk_take_ray(sk_min_u32(i, n - 1u), i < n, params, rays, skip, tables);
     const sk_walk walk = sk_walk_grid(team, sk_local_id() % SK_TEAM, grid, params, own.ray, tables, own.skip, 0);
     if (i < n) hits[i] = sk_make_hit(params, own.ray, tables.instance_starts, walk.best);
 }
 
-SK_FUNCTION void sk_trace_any(SK_SHARED sk_team* team, sk_u32 n, sk_u32 i, SetkaGridHeader grid, sk_trace_params params,
+SK_FUNCTION void sk_trace_any(SK_SHARED sk_team* team, sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
                               SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
                               SK_GLOBAL sk_u32* occluded, sk_grid_tables tables) {
+    const sk_u32 i = sk_place_in_list(params, n, first);
     const sk_member_ray own = sk_take_ray(sk_min_u32(i, n - 1u), i < n, params, rays, skip, tables);
     const sk_walk walk = sk_walk_grid(team, sk_local_id() % SK_TEAM, grid, params, own.ray, tables, own.skip, 1);
     if (i < n) occluded[i] = walk.best.triangle != SETKA_NO_HIT ? 1u : 0u;
