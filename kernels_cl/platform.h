@@ -122,6 +122,19 @@ typedef int8 sk_iN;
 #else
 #define sk_lane_bits(mask) ((sk_u32)sk_lanes_or((mask) & (int8)(1, 2, 4, 8, 16, 32, 64, 128)))
 #endif
+#if SK_WIDTH == 16u && defined(__AVX512F__) && defined(__POPCNT__)
+/* These instructions write no element but those asked for. Their functions know no address spaces. */
+#define sk_put_u16(target, bits, i)                                                                                                    \
+    __builtin_ia32_pmovdw512mem_mask((void*)(uintptr_t)(target), __builtin_ia32_compresssi512_mask((i), (int16)(0), (ushort)(bits)), \
+                                     (ushort)((1u << popcount((uint)(bits))) - 1u))
+#define sk_put_some(target, n, i) __builtin_ia32_storedqusi512_mask((void*)(uintptr_t)(target), (i), (ushort)((1u << (n)) - 1u))
+#elif SK_WIDTH == 16u
+#define sk_put_u16(target, bits, i)                                           \
+    for (uint sk_rest = (bits), sk_n = 0u; sk_rest != 0u; sk_rest &= sk_rest - 1u) \
+    (target)[sk_n++] = (ushort)(i)[popcount((sk_rest & (0u - sk_rest)) - 1u)]
+#define sk_put_some(target, n, i) \
+    for (uint sk_n = 0u; sk_n < (n); ++sk_n) (target)[sk_n] = (uint)(i)[sk_n]
+#endif
 #endif
 
 #endif

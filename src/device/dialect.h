@@ -39,6 +39,7 @@
  *   sk_lanes_as_int(f) sk_lanes_as_float(i)                      bit casts
  *   sk_lanes_or(i)                                               of all lanes
  *   sk_lane_bits(mask)                                           bit k: the mask is set in lane k
+ *   sk_put_u16(target, bits, i), sk_put_some(target, n, i)       with 16 lanes: target[0], … are the lanes whose bit is set, the first n
  *   sk_shuffle(v, w, i, …)                                       elements of v and w, which are numbered on
  *
  * Not allowed: fma, mad, min, max, clamp, rsqrt, dot, cross, normalize, pow, exp, log, sin, float3, doubles without SK_DOUBLE, sub-groups,

@@ -89,6 +89,15 @@ static inline sk_u32 sk_lane_bits(sk_iN mask) {
     for (sk_u32 k = 0u; k < SK_WIDTH; ++k) r |= (mask[k] != 0 ? 1u : 0u) << k;
     return r;
 }
+#if SK_WIDTH == 16u
+static inline void sk_put_u16(sk_u16* target, sk_u32 bits, sk_iN i) {
+    for (sk_u32 k = 0u; k < SK_WIDTH; ++k)
+        if ((bits >> k & 1u) != 0u) *target++ = static_cast<sk_u16>(i[k]);
+}
+static inline void sk_put_some(sk_u32* target, sk_u32 n, sk_iN i) {
+    for (sk_u32 k = 0u; k < n; ++k) target[k] = static_cast<sk_u32>(i[k]);
+}
+#endif
 #endif
 
 static inline sk_u32 sk_atomic_min(sk_u32* target, sk_u32 value) {

@@ -50,39 +50,53 @@ SK_FUNCTION sk_run_of_triangles sk_make_run(SK_GLOBAL sk_u32* next, SK_GLOBAL sk
     return r;
 }
 
-/** Counts a pair, or puts it where it belongs. */
-SK_FUNCTION void sk_hand_over(sk_run_of_triangles run, sk_u32 x, sk_u32 y, sk_u32 z, sk_u32 triangle, const int put) {
-    SK_GLOBAL sk_u32* next = run.next + sk_number_at(run.bins, x / SK_BIN_SIDE, y / SK_BIN_SIDE, z / SK_BIN_SIDE);
-    const sk_u32 place = *next;
-    *next = place + 1u;
-    if (put) {
-        run.cells[place] = (sk_u16)sk_cell_in_bin(x, y, z);
-        run.triangles[place] = triangle;
-    }
-}
-
-/** The pairs of a triangle whose cells are in one bin. */
-SK_FUNCTION void sk_hand_over_bin(sk_run_of_triangles run, sk_reach reach, sk_u32 triangle, const int put) {
-    const sk_u32 first = reach.corner_z & 0xffffu;
-    sk_u32 place = run.next[reach.corner_xy];
+/** Counts the pairs of a triangle whose cells are in one bin, as a mask from the bin's cell `first` on, or puts them where they belong. */
+SK_FUNCTION void sk_hand_over_bin(sk_run_of_triangles run, sk_u32 bin, sk_u32 first, sk_u64 mask, sk_u32 triangle, const int put) {
+    sk_u32 place = run.next[bin];
     if (!put) {
-        place += sk_bit_count(sk_reach_mask(reach));
+        place += sk_bit_count(mask);
     } else {
-        for (sk_u64 rest = sk_reach_mask(reach); rest != 0u; rest &= rest - 1u) {
+#if SK_WIDTH == 16u
+#define SK_STEP_OF(k) (sk_i32) sk_bin_step(k)
+        sk_iN cells = sk_same_i((sk_i32)first) + SK_INTS(SK_STEP_OF);
+#undef SK_STEP_OF
+        const sk_iN same = sk_same_i((sk_i32)triangle);
+        for (sk_u64 rest = mask; rest != 0u; rest >>= 16) {
+            const sk_u32 layer = (sk_u32)rest & 0xffffu, count = sk_popcount(layer);
+            sk_put_u16(run.cells + place, layer, cells);
+            sk_put_some(run.triangles + place, count, same);
+            place += count;
+            cells += (sk_i32)sk_bin_step(16u);
+        }
+#else
+        for (sk_u64 rest = mask; rest != 0u; rest &= rest - 1u) {
             run.cells[place] = (sk_u16)(first + sk_bin_step(sk_lowest_bit(rest)));
             run.triangles[place] = triangle;
             place += 1u;
         }
+#endif
     }
-    run.next[reach.corner_xy] = place;
+    run.next[bin] = place;
 }
 
-/** The pairs of a triangle whose cells are in several. */
+/** Of a mask's 4 x 4 x 4 cells, those that lie less than `count` from its corner along an axis. */
+SK_FUNCTION sk_u64 sk_near_x(sk_u32 count) { return ((sk_u64)0x11111111u << 32 | 0x11111111u) * ((1u << sk_min_u32(count, 4u)) - 1u); }
+SK_FUNCTION sk_u64 sk_near_y(sk_u32 count) { return ((sk_u64)0x00010001u << 32 | 0x00010001u) * ((1u << sk_min_u32(4u * count, 16u)) - 1u); }
+SK_FUNCTION sk_u64 sk_near_z(sk_u32 count) { return count < 4u ? ((sk_u64)1 << 16u * count) - 1u : ~(sk_u64)0; }
+
+/** The pairs of a triangle whose cells are in several bins, up to two along each axis: one after the other. */
 SK_FUNCTION void sk_hand_over_mask(sk_run_of_triangles run, sk_reach reach, sk_u32 triangle, const int put) {
     const sk_dims corner = sk_reach_corner(reach);
-    for (sk_u64 rest = sk_reach_mask(reach); rest != 0u; rest &= rest - 1u) {
-        const sk_u32 bit = sk_lowest_bit(rest);
-        sk_hand_over(run, corner.x + (bit & 3u), corner.y + (bit >> 2 & 3u), corner.z + (bit >> 4), triangle, put);
+    const sk_u64 near_x = sk_near_x(SK_BIN_SIDE - corner.x % SK_BIN_SIDE), near_y = sk_near_y(SK_BIN_SIDE - corner.y % SK_BIN_SIDE),
+                 near_z = sk_near_z(SK_BIN_SIDE - corner.z % SK_BIN_SIDE);
+    const sk_u32 bin = sk_number_at(run.bins, corner.x / SK_BIN_SIDE, corner.y / SK_BIN_SIDE, corner.z / SK_BIN_SIDE);
+    const sk_u32 first = sk_cell_in_bin(corner.x, corner.y, corner.z);
+    for (sk_u32 part = 0u; part < 8u; ++part) {
+        const sk_u32 x = part & 1u, y = part >> 1 & 1u, z = part >> 2;
+        const sk_u64 mask = sk_reach_mask(reach) & (x != 0u ? ~near_x : near_x) & (y != 0u ? ~near_y : near_y) & (z != 0u ? ~near_z : near_z);
+        /* Cells of the next bin on an axis are counted from this one's corner on, and so by a side too many. */
+        if (mask != 0u)
+            sk_hand_over_bin(run, bin + x + run.bins.x * (y + run.bins.y * z), first - SK_BIN_SIDE * (x + SK_BIN_SIDE * (y + SK_BIN_SIDE * z)), mask, triangle, put);
     }
 }
 
@@ -171,7 +185,7 @@ SK_FUNCTION void sk_hand_over_run(sk_run_of_triangles run, sk_u32 first, sk_u32 
     for (sk_u32 i = first; i < end; ++i) {
         const sk_reach reach = reaches[i];
         if (sk_reach_kind(reach) == SK_REACH_IN_BIN) {
-            sk_hand_over_bin(run, reach, i, put);
+            sk_hand_over_bin(run, reach.corner_xy, reach.corner_z & 0xffffu, sk_reach_mask(reach), i, put);
         } else if (sk_reach_kind(reach) == SK_REACH_MASK) {
             sk_hand_over_mask(run, reach, i, put);
         } else {
