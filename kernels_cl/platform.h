@@ -122,7 +122,8 @@ typedef int8 sk_iN;
 #else
 #define sk_lane_bits(mask) ((sk_u32)sk_lanes_or((mask) & (int8)(1, 2, 4, 8, 16, 32, 64, 128)))
 #endif
-#if SK_WIDTH == 16u && defined(__AVX512F__) && defined(__POPCNT__)
+#if SK_WIDTH == 16u && defined(__AVX512F__) && __has_builtin(__builtin_ia32_pmovdw512mem_mask) && \
+    __has_builtin(__builtin_ia32_compresssi512_mask) && __has_builtin(__builtin_ia32_storedqusi512_mask)
 /* These instructions write no element but those asked for. Their functions know no address spaces. */
 #define sk_put_u16(target, bits, i)                                                                                                    \
     __builtin_ia32_pmovdw512mem_mask((void*)(uintptr_t)(target), __builtin_ia32_compresssi512_mask((i), (int16)(0), (ushort)(bits)), \
