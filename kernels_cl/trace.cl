@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /** Entries of the tracers, one a structure, query and step; the bodies are in src/device/trace and src/device/grid. Those with
- * `first` do rays first to n - 1; trace_grid_closest_dda and trace_grid_any_dda SK_ITEM_RAYS a work-item, the others one. Those of a
- * picture take them tile by tile; where a work-item has many, the others do so too. */
+ * `first` do rays first to n - 1, one a work-item; but trace_grid_closest_dda and trace_grid_any_dda have many in each on CPUs, and on GPUs last
+ * teams of half as many. Those of a picture take rays tile by tile; where a work-item has many, the others do so too. */
 #include "platform.h"
 
 #include "device/grid/trace.h"

@@ -40,8 +40,8 @@ void launch_items(Queue& queue, Kernel kernel, std::uint32_t items, const Ts&...
 
 /// How the elements of a launch are shared out.
 struct Shares {
-    std::uint32_t an_item = 1;         ///< a work-item has so many
-    std::uint32_t halved_groups = 0;   ///< so many of the last groups are two, with half of the elements each
+    std::uint32_t an_item = 1;        ///< a work-item has so many
+    std::uint32_t halved_groups = 0;  ///< so many of the last groups are two, with half of the elements each
 };
 
 /// The same for a kernel that takes a second number, the first element (`n, first, …`), and does elements first to n - 1. Where a stop can be

@@ -96,7 +96,8 @@ SK_FUNCTION void sk_hand_over_mask(sk_run_of_triangles run, sk_reach reach, sk_u
         const sk_u64 mask = sk_reach_mask(reach) & (x != 0u ? ~near_x : near_x) & (y != 0u ? ~near_y : near_y) & (z != 0u ? ~near_z : near_z);
         /* Cells of the next bin on an axis are counted from this one's corner on, and so by a side too many. */
         if (mask != 0u)
-            sk_hand_over_bin(run, bin + x + run.bins.x * (y + run.bins.y * z), first - SK_BIN_SIDE * (x + SK_BIN_SIDE * (y + SK_BIN_SIDE * z)), mask, triangle, put);
+            sk_hand_over_bin(run, bin + x + run.bins.x * (y + run.bins.y * z),
+                             first - SK_BIN_SIDE * (x + SK_BIN_SIDE * (y + SK_BIN_SIDE * z)), mask, triangle, put);
     }
 }
 

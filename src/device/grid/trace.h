@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /**
- * What does one work-item of a query do with the walks? On GPUs it walks with ray i of n as a member of its team; where i is past the
- * last ray it only helps. On CPUs it walks with the rays at places i to i + SK_ITEM_RAYS - 1 of n (trace/tiles.h).
+ * What does one work-item of a query do with the walks? On GPUs it walks with one of rays `first` to n - 1 as a member of its team; where
+ * there is none for it, it only helps. On CPUs it walks with those at SK_ITEM_RAYS places (trace/tiles.h).
  */
 #ifndef SETKA_DEVICE_GRID_TRACE_H
 #define SETKA_DEVICE_GRID_TRACE_H
@@ -12,13 +12,6 @@
 #if SK_WIDTH > 1
 #include "device/grid/walk_frustum.h"
 #include "device/grid/walk_lanes.h"
-#endif
-
-/** The rays of a work-item. */
-#if SK_WIDTH > 1
-#define SK_ITEM_RAYS (SK_WIDTH * SK_FLIGHTS)
-#else
-#define SK_ITEM_RAYS 1u
 #endif
 
 /** A ray on its way, as a member of a team has it. */
@@ -126,10 +119,10 @@ SK_FUNCTION void sk_trace_any(SK_SHARED sk_team* team, sk_u32 n, sk_u32 first, S
  */
 SK_FUNCTION sk_u32 sk_place_in_list(sk_trace_params params, sk_u32 n, sk_u32 first) {
 #if SK_TEAM > 1
-    const sk_u32 few = SK_TEAM / 2u, team = sk_group_id(), member = sk_local_id();
+    const sk_u32 share = SK_TEAM / 2u, team = sk_group_id(), member = sk_local_id();
     const sk_u32 teams = (n - first + SK_TEAM - 1u) / SK_TEAM, whole = teams - sk_min_u32(teams, params.halved_teams);
     if (team < whole) return first + team * SK_TEAM + member;
-    return member < few ? first + whole * SK_TEAM + (team - whole) * few + member : n;
+    return member < share ? first + whole * SK_TEAM + (team - whole) * share + member : n;
 #else
     (void)params, (void)n;
     return first + sk_global_id();

@@ -18,7 +18,8 @@
 #if SK_WIDTH > 1
 #define SK_TILE_RAYS SK_WIDTH
 #define SK_TILE_COLUMNS 4u
-#define SK_BLOCK_RAYS (SK_WIDTH * SK_FLIGHTS)
+#define SK_ITEM_RAYS (SK_WIDTH * SK_FLIGHTS) /* of a work-item, in pictures and lists */
+#define SK_BLOCK_RAYS SK_ITEM_RAYS
 #else
 #define SK_TILE_RAYS 32u
 #define SK_TILE_COLUMNS 8u
