@@ -91,9 +91,14 @@ SK_FUNCTION void sk_hand_over_mask(sk_run_of_triangles run, sk_reach reach, sk_u
                  near_z = sk_near_z(SK_BIN_SIDE - corner.z % SK_BIN_SIDE);
     const sk_u32 bin = sk_number_at(run.bins, corner.x / SK_BIN_SIDE, corner.y / SK_BIN_SIDE, corner.z / SK_BIN_SIDE);
     const sk_u32 first = sk_cell_in_bin(corner.x, corner.y, corner.z);
-    for (sk_u32 part = 0u; part < 8u; ++part) {
-        const sk_u32 x = part & 1u, y = part >> 1 & 1u, z = part >> 2;
-        const sk_u64 mask = sk_reach_mask(reach) & (x != 0u ? ~near_x : near_x) & (y != 0u ? ~near_y : near_y) & (z != 0u ? ~near_z : near_z);
+    const sk_u64 all = sk_reach_mask(reach);
+    sk_u32 parts = 1u; /* bit x + 2 y + 4 z: some cell may be in that one of the eight bins */
+    parts |= (all & ~near_x) != 0u ? parts << 1 : 0u;
+    parts |= (all & ~near_y) != 0u ? parts << 2 : 0u;
+    parts |= (all & ~near_z) != 0u ? parts << 4 : 0u;
+    for (; parts != 0u; parts &= parts - 1u) {
+        const sk_u32 part = sk_lowest_bit(parts), x = part & 1u, y = part >> 1 & 1u, z = part >> 2;
+        const sk_u64 mask = all & (x != 0u ? ~near_x : near_x) & (y != 0u ? ~near_y : near_y) & (z != 0u ? ~near_z : near_z);
         /* Cells of the next bin on an axis are counted from this one's corner on, and so by a side too many. */
         if (mask != 0u)
             sk_hand_over_bin(run, bin + x + run.bins.x * (y + run.bins.y * z),
@@ -383,6 +388,9 @@ SK_FUNCTION void sk_place_bin(sk_u32 bin, sk_u32 first, sk_u32 end, SetkaGridHea
                     list.offset += list.count;
                     r += 1u;
                 }
+#if SK_WIDTH > 1
+                for (sk_u32 place = block.clearance; place < list.offset; place += 16u) sk_prefetch(references + place);
+#endif
                 block.clearance = sk_mask_of(block) != 0u ? 0u : sk_clearance_in(rings, own.first.x + x);
                 blocks[b] = block;
             }

@@ -66,7 +66,7 @@ SK_FUNCTION void sk_store_lanes(sk_iN v, sk_u32* target) { sk_store_i(v, (sk_i32
 typedef struct sk_boxes_lanes {
     sk_u32 words[4][SK_WIDTH]; /* of sk_reach */
     sk_u32 xy[SK_WIDTH], z[SK_WIDTH], most[SK_WIDTH];
-    sk_u32 pairs, fours, large; /* bits of lanes */
+    sk_u32 twos, threes, fours, large; /* bits of lanes: what waits is no more than so many cells wide */
 } sk_boxes_lanes;
 
 /** The lowest `count` bits, 1 to 4, of a mask's word. */
@@ -83,7 +83,6 @@ SK_FUNCTION sk_boxes_lanes sk_boxes_of(SetkaGridHeader grid, sk_points_lanes poi
     const sk_iN most = sk_max_i(sk_max_i(x.count, y.count), z.count);
     const sk_iN single = (x.count == 1) + (y.count == 1) + (z.count == 1); /* each true one is -1 */
     const sk_iN is_run = (single <= -2) & (most <= 4) & x.is_clear & y.is_clear & z.is_clear;
-    const sk_iN is_pair = ~is_run & (most <= 2), is_four = ~is_run & (most > 2) & (most <= 4);
     const sk_iN is_large = most > (sk_i32)SK_SMALL_BOX, is_rows = (most > 4) & ~is_large;
     const sk_iN low = sk_run_lanes(x.count, 1u) | sk_run_lanes(y.count, 4u) | ((z.count >= 2) & 0x10000);
     const sk_iN high = ((z.count >= 3) & 1) | ((z.count >= 4) & 0x10000);
@@ -103,8 +102,9 @@ SK_FUNCTION sk_boxes_lanes sk_boxes_of(SetkaGridHeader grid, sk_points_lanes poi
     sk_store_lanes(xy, r.xy);
     sk_store_lanes(z.first, r.z);
     sk_store_lanes(most, r.most);
-    r.pairs = sk_lane_bits(is_pair);
-    r.fours = sk_lane_bits(is_four);
+    r.twos = sk_lane_bits(~is_run & (most <= 2));
+    r.threes = sk_lane_bits(~is_run & (most == 3));
+    r.fours = sk_lane_bits(~is_run & (most == 4));
     r.large = sk_lane_bits(is_large);
     return r;
 }
@@ -194,7 +194,7 @@ SK_FUNCTION sk_fN sk_largest_lanes(sk_vec3N a) {
     return sk_max_f(sk_max_f(sk_abs_f(a.x), sk_abs_f(a.y)), sk_abs_f(a.z));
 }
 
-/** The rule for triangles whose boxes are no more than `cells` wide, 2 or 4, from the corners on. */
+/** The rule for triangles whose boxes are no more than `cells` wide, 2 to 4, from the corners on. */
 SK_FUNCTION sk_rule_lanes sk_rule_of(SetkaGridHeader grid, sk_points_lanes points, sk_iN corner_x, sk_iN corner_y,
                                      sk_iN corner_z, const int cells) {
     const float tolerance = grid.tolerance;
@@ -337,9 +337,10 @@ SK_FUNCTION void sk_reach_rest(sk_waiting* waiting, SetkaGridHeader grid, SK_GLO
 /** The reaches of triangles first to end - 1, and in how many cells large ones are at least, in units of SK_LONG_ROW. */
 SK_FUNCTION sk_u64 sk_find_reaches(sk_u32 first, sk_u32 end, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
                                    SK_GLOBAL sk_reach* reaches) {
-    sk_waiting pairs, fours;
+    sk_waiting twos, threes, fours;
     sk_u64 units = 0u;
-    pairs.count = 0u;
+    twos.count = 0u;
+    threes.count = 0u;
     fours.count = 0u;
     for (sk_u32 start = first; start < end; start += SK_WIDTH) {
         const sk_u32 count = sk_min_u32(end - start, SK_WIDTH), lanes = (2u << (count - 1u)) - 1u;
@@ -362,10 +363,12 @@ SK_FUNCTION sk_u64 sk_find_reaches(sk_u32 first, sk_u32 end, SetkaGridHeader gri
         }
         for (sk_u32 k = 0u, large = boxes.large & lanes; large != 0u; ++k, large >>= 1)
             units += (large & 1u) != 0u ? boxes.most[k] / SK_LONG_ROW : 0u;
-        sk_let_wait(&pairs, start, boxes.pairs & lanes, &boxes, grid, triangles, reaches, 2);
+        sk_let_wait(&twos, start, boxes.twos & lanes, &boxes, grid, triangles, reaches, 2);
+        sk_let_wait(&threes, start, boxes.threes & lanes, &boxes, grid, triangles, reaches, 3);
         sk_let_wait(&fours, start, boxes.fours & lanes, &boxes, grid, triangles, reaches, 4);
     }
-    sk_reach_rest(&pairs, grid, triangles, reaches, 2);
+    sk_reach_rest(&twos, grid, triangles, reaches, 2);
+    sk_reach_rest(&threes, grid, triangles, reaches, 3);
     sk_reach_rest(&fours, grid, triangles, reaches, 4);
     return units;
 }
