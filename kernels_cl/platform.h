@@ -77,6 +77,7 @@ typedef int16 sk_iN;
 #define sk_make_i(...) ((int16)(__VA_ARGS__))
 #define sk_store_f(v, p) vstore16(v, 0, p)
 #define sk_store_i(v, p) vstore16(v, 0, p)
+#define sk_load_i(p) vload16(0, p)
 #define sk_lanes_to_float(i) convert_float16(i)
 #define sk_lanes_to_int(f) convert_int16(f)
 #define sk_lanes_as_int(f) as_int16(f)
@@ -88,6 +89,7 @@ typedef int8 sk_iN;
 #define sk_make_i(...) ((int8)(__VA_ARGS__))
 #define sk_store_f(v, p) vstore8(v, 0, p)
 #define sk_store_i(v, p) vstore8(v, 0, p)
+#define sk_load_i(p) vload8(0, p)
 #define sk_lanes_to_float(i) convert_float8(i)
 #define sk_lanes_to_int(f) convert_int8(f)
 #define sk_lanes_as_int(f) as_int8(f)
@@ -96,6 +98,7 @@ typedef int8 sk_iN;
 #define sk_prefetch(p) __builtin_prefetch(p)
 #define sk_load_f4(p) vload4(0, p)
 #define sk_store_f4(v, p) vstore4(v, 0, p)
+#define sk_store_i4(v, p) vstore4(v, 0, p)
 #define sk_same_f4(a) ((float4)(a))
 /* Compilers of OpenCL C are made of Clang, which has subscripts and shuffles of vectors. */
 #define sk_lane(v, k) ((v)[k])
@@ -128,6 +131,7 @@ typedef int8 sk_iN;
 #define sk_put_u16(target, bits, i)                                                                                                    \
     __builtin_ia32_pmovdw512mem_mask((void*)(uintptr_t)(target), __builtin_ia32_compresssi512_mask((i), (int16)(0), (ushort)(bits)), \
                                      (ushort)((1u << popcount((uint)(bits))) - 1u))
+#define sk_put_i(target, bits, i) vstore16(__builtin_ia32_compresssi512_mask((i), (int16)(0), (ushort)(bits)), 0, target)
 #define sk_put_some(target, n, i) __builtin_ia32_storedqusi512_mask((void*)(uintptr_t)(target), (i), (ushort)((1u << (n)) - 1u))
 #elif SK_WIDTH == 16u
 #define sk_put_u16(target, bits, i)                                           \
@@ -135,6 +139,11 @@ typedef int8 sk_iN;
     (target)[sk_n++] = (ushort)(i)[popcount((sk_rest & (0u - sk_rest)) - 1u)]
 #define sk_put_some(target, n, i) \
     for (uint sk_n = 0u; sk_n < (n); ++sk_n) (target)[sk_n] = (uint)(i)[sk_n]
+#endif
+#ifndef sk_put_i
+#define sk_put_i(target, bits, i)                                             \
+    for (uint sk_rest = (bits), sk_n = 0u; sk_rest != 0u; sk_rest &= sk_rest - 1u) \
+    (target)[sk_n++] = (i)[popcount((sk_rest & (0u - sk_rest)) - 1u)]
 #endif
 #endif
 

@@ -33,12 +33,15 @@
  *   sk_make_f(a, …) sk_make_i(a, …) sk_lane(v, k)                k is a constant
  *   sk_prefetch(p)                                               what p points to will be read soon
  *   sk_load_f4(p) sk_store_f4(v, p)                              global memory, aligned as one number is
- *   sk_store_f(v, p) sk_store_i(v, p)                            the same to private memory
+ *   sk_store_i4(v, p)                                            4 sk_i32, as a shuffle gives them; the same
+ *   sk_store_f(v, p) sk_store_i(v, p) sk_load_i(p)               of SK_WIDTH, in private memory too
  *   sk_same_f4(a)                                                four times a
  *   sk_lanes_to_float(i) sk_lanes_to_int(f)                      conversions; f in the range of sk_i32
  *   sk_lanes_as_int(f) sk_lanes_as_float(i)                      bit casts
  *   sk_lanes_or(i)                                               of all lanes
  *   sk_lane_bits(mask)                                           bit k: the mask is set in lane k
+ *   sk_put_i(target, bits, i)                                    target[0], … in private memory are the lanes whose bit is set; up to SK_WIDTH
+ *                                                                more may be written
  *   sk_put_u16(target, bits, i), sk_put_some(target, n, i)       with 16 lanes: target[0], … are the lanes whose bit is set, the first n
  *   sk_shuffle(v, w, i, …)                                       elements of v and w, which are numbered on
  *

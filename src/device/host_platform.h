@@ -74,6 +74,12 @@ static inline void sk_store_f4(sk_f4 v, float* p) { std::memcpy(p, &v, sizeof v)
 static inline sk_f4 sk_same_f4(float a) { return sk_f4{a, a, a, a}; }
 static inline void sk_store_f(sk_fN v, float* p) { std::memcpy(p, &v, sizeof v); }
 static inline void sk_store_i(sk_iN v, sk_i32* p) { std::memcpy(p, &v, sizeof v); }
+static inline sk_iN sk_load_i(const sk_i32* p) {
+    sk_iN r;
+    std::memcpy(&r, p, sizeof r);
+    return r;
+}
+static inline void sk_store_i4(sk_i32 __attribute__((vector_size(16))) v, sk_i32* p) { std::memcpy(p, &v, sizeof v); }
 #define sk_lanes_to_float(i) __builtin_convertvector(i, sk_fN)
 #define sk_lanes_to_int(f) __builtin_convertvector(f, sk_iN)
 #define sk_lanes_as_int(f) ((sk_iN)(f))
@@ -88,6 +94,10 @@ static inline sk_u32 sk_lane_bits(sk_iN mask) {
     sk_u32 r = 0;
     for (sk_u32 k = 0u; k < SK_WIDTH; ++k) r |= (mask[k] != 0 ? 1u : 0u) << k;
     return r;
+}
+static inline void sk_put_i(sk_i32* target, sk_u32 bits, sk_iN i) {
+    for (sk_u32 k = 0u; k < SK_WIDTH; ++k)
+        if ((bits >> k & 1u) != 0u) *target++ = i[k];
 }
 #if SK_WIDTH == 16u
 static inline void sk_put_u16(sk_u16* target, sk_u32 bits, sk_iN i) {

@@ -101,6 +101,19 @@ SK_FUNCTION sk_columns sk_turn_rows(sk_fN s0, sk_fN s1, sk_fN s2, sk_fN s3) {
     return r;
 }
 
+/** Four numbers of lane k, one of each vector, to target[4 k] and on. */
+SK_FUNCTION void sk_store_rows(sk_iN a, sk_iN b, sk_iN c, sk_iN d, SK_GLOBAL sk_i32* target) {
+    const sk_columns rows = sk_turn_rows(sk_lanes_as_float(a), sk_lanes_as_float(b), sk_lanes_as_float(c), sk_lanes_as_float(d));
+    const sk_iN row0 = sk_lanes_as_int(rows.a), row1 = sk_lanes_as_int(rows.b), row2 = sk_lanes_as_int(rows.c), row3 = sk_lanes_as_int(rows.d);
+#define SK_STORE_FOUR(k)                                                              \
+    sk_store_i4(sk_shuffle(row0, row0, (k), (k) + 1, (k) + 2, (k) + 3), target + 4 * (k)),     \
+        sk_store_i4(sk_shuffle(row1, row1, (k), (k) + 1, (k) + 2, (k) + 3), target + 4 * (k) + 4), \
+        sk_store_i4(sk_shuffle(row2, row2, (k), (k) + 1, (k) + 2, (k) + 3), target + 4 * (k) + 8), \
+        sk_store_i4(sk_shuffle(row3, row3, (k), (k) + 1, (k) + 2, (k) + 3), target + 4 * (k) + 12)
+    SK_EACH_FOUR(SK_STORE_FOUR);
+#undef SK_STORE_FOUR
+}
+
 #define SK_TWO_ROWS(row, k) sk_shuffle(row(k), row((k) + 4), 0, 1, 2, 3, 4, 5, 6, 7)
 #if SK_WIDTH == 16u
 #define SK_ROWS(row, k) \

@@ -294,6 +294,105 @@ SK_FUNCTION sk_bin_blocks sk_blocks_of_bin(sk_dims blocks, sk_dims bins, sk_u32 
     return r;
 }
 
+/** The records of a bin's blocks will be needed soon: those of a row are a line of a cache. */
+SK_FUNCTION void sk_await_blocks(sk_dims dims, sk_bin_blocks own, SK_GLOBAL const sk_block* blocks) {
+#if SK_WIDTH > 1
+    for (sk_u32 z = 0u; z < own.count.z; ++z)
+        for (sk_u32 y = 0u; y < own.count.y; ++y)
+            sk_prefetch(blocks + sk_number_at(dims, own.first.x, own.first.y + y, own.first.z + z));
+#endif
+}
+
+#if SK_WIDTH > 1
+
+/** Bit 4 k of each lane is bit from + k of `of`, for k = 0 to 7. */
+SK_FUNCTION sk_iN sk_spread_bits(sk_iN of, const sk_u32 from) {
+    sk_iN r = of >> from & 0xff;
+    r = (r | r << 12) & 0x000f000f;
+    r = (r | r << 6) & 0x03030303;
+    return (r | r << 3) & 0x11111111;
+}
+
+/** What four lanes have together, in each of them: all bits, or the sum. */
+#define SK_NEXT_LANES(k) (k) + 1, (k) + 2, (k) + 3, (k)
+#define SK_OTHER_LANES(k) (k) + 2, (k) + 3, (k), (k) + 1
+SK_FUNCTION sk_iN sk_bits_of_four(sk_iN a) {
+    const sk_iN r = a | sk_shuffle(a, a, SK_EACH_FOUR(SK_NEXT_LANES));
+    return r | sk_shuffle(r, r, SK_EACH_FOUR(SK_OTHER_LANES));
+}
+SK_FUNCTION sk_iN sk_sum_of_four(sk_iN a) {
+    const sk_iN r = a + sk_shuffle(a, a, SK_EACH_FOUR(SK_NEXT_LANES));
+    return r + sk_shuffle(r, r, SK_EACH_FOUR(SK_OTHER_LANES));
+}
+
+/** The records of blocks beside each other, a cell along x in each lane, as words of sk_block; bits of lanes whose block is not empty; the longest lists. */
+typedef struct sk_counted_lanes {
+    sk_iN words, longest;
+    sk_u32 filled;
+} sk_counted_lanes;
+
+/** From the counters of the first lane's first cell on, each below 2^31 as all pairs of a bin are together. */
+SK_FUNCTION sk_counted_lanes sk_count_lanes(SK_GLOBAL const sk_u32* counters) {
+#define SK_LANE(k) (k)
+    const sk_iN in_block = SK_INTS(SK_LANE) & 3;
+#undef SK_LANE
+    sk_iN rows = sk_same_i(0), pairs = sk_same_i(0), low, high;
+    sk_counted_lanes r;
+    r.longest = sk_same_i(0);
+    for (sk_u32 row = 0u; row < SK_BLOCK_CELLS / 4u; ++row) {
+        const sk_iN counts = sk_load_i((SK_GLOBAL const sk_i32*)(counters + SK_BIN_SIDE * ((row & 3u) + SK_BIN_SIDE * (row >> 2))));
+        rows |= (counts != 0) & (sk_i32)(1u << row);
+        pairs += counts;
+        r.longest = sk_max_i(r.longest, counts);
+    }
+    low = sk_bits_of_four(sk_spread_bits(rows, 0u) << in_block);
+    high = sk_bits_of_four(sk_spread_bits(rows, 8u) << in_block);
+    pairs = sk_sum_of_four(pairs);
+    r.filled = sk_lane_bits(pairs != 0);
+    r.words = sk_select_i(in_block == 0, low, sk_select_i(in_block == 1, high, (in_block == 3) & pairs));
+    return r;
+}
+
+/** The records of a bin's blocks as sk_count_block() makes them; how long the longest list is. */
+SK_FUNCTION sk_u32 sk_count_bin(sk_u32 bin, sk_u32 first, sk_u32 end, SetkaGridHeader grid, SK_GLOBAL const sk_u16* cells,
+                                SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_block* counted, SK_GLOBAL sk_u32* marks) {
+    const sk_dims dims = sk_block_dims(sk_cell_dims(grid));
+    const sk_bin_blocks own = sk_blocks_of_bin(dims, sk_bin_dims(sk_cell_dims(grid)), bin);
+    sk_u32 lengths[SK_WIDTH], longest = 0u;
+    sk_counted_lanes of_four;
+    sk_iN longest_lists = sk_same_i(0);
+    of_four.words = sk_same_i(0);
+    of_four.filled = 0u;
+    if (first < end) sk_count_in_bin(first, end, cells, counters);
+    for (sk_u32 z = 0u; z < own.count.z; ++z)
+        for (sk_u32 y = 0u; y < own.count.y; ++y)
+            for (sk_u32 x = 0u; x < own.count.x; x += SK_WIDTH / 4u) {
+                const sk_u32 b = sk_number_at(dims, own.first.x + x, own.first.y + y, own.first.z + z);
+                const sk_u32 blocks = sk_min_u32(own.count.x - x, SK_WIDTH / 4u);
+                if (first < end) {
+                    of_four = sk_count_lanes(counters + sk_cell_in_bin(4u * x, 4u * y, 4u * z));
+                    longest_lists = sk_max_i(longest_lists, of_four.longest);
+                }
+                if (of_four.filled != 0u) {
+                    sk_u32 bits = 0u;
+                    for (sk_u32 k = 0u; k < blocks; ++k) bits |= (of_four.filled >> 4u * k & 1u) << k;
+                    sk_mark_blocks(dims, b % dims.x, b / dims.x, bits, marks);
+                }
+                if (blocks == SK_WIDTH / 4u) {
+                    sk_store_i(of_four.words, (SK_GLOBAL sk_i32*)(counted + b));
+                } else {
+                    sk_u32 words[SK_WIDTH];
+                    sk_store_lanes(of_four.words, words);
+                    for (sk_u32 k = 0u; k < 4u * blocks; ++k) ((SK_GLOBAL sk_u32*)(counted + b))[k] = words[k];
+                }
+            }
+    sk_store_lanes(longest_lists, lengths);
+    for (sk_u32 k = 0u; k < SK_WIDTH; ++k) longest = sk_max_u32(longest, lengths[k]);
+    return longest;
+}
+
+#else
+
 /** What the counters of a block say, from that of its first cell on. */
 SK_FUNCTION sk_tally sk_tally_in_bin(SK_GLOBAL const sk_u32* counters) {
     sk_tally r = sk_no_tally();
@@ -321,6 +420,8 @@ SK_FUNCTION sk_u32 sk_count_bin(sk_u32 bin, sk_u32 first, sk_u32 end, SetkaGridH
             }
     return longest;
 }
+
+#endif
 
 /**
  * The same for bins first, first + step, … below n. Of `blocks` records, those that the grid has no block for are empty ones, or all
@@ -368,6 +469,8 @@ SK_FUNCTION void sk_place_bin(sk_u32 bin, sk_u32 first, sk_u32 end, SetkaGridHea
                               SK_GLOBAL sk_cell_list* lists, SK_GLOBAL sk_u32* references) {
     const sk_dims dims = sk_block_dims(sk_cell_dims(grid));
     const sk_bin_blocks own = sk_blocks_of_bin(dims, sk_bin_dims(sk_cell_dims(grid)), bin);
+    sk_await_blocks(dims, own, counted);
+    sk_await_blocks(dims, own, blocks);
     if (first < end) sk_count_in_bin(first, end, cells, counters);
     for (sk_u32 z = 0u; z < own.count.z; ++z)
         for (sk_u32 y = 0u; y < own.count.y; ++y) {

@@ -39,10 +39,10 @@ SK_FUNCTION sk_points_lanes sk_load_cell_points_lanes(SetkaGridHeader grid, SK_G
                           sk_load_column(triangles + 8, 9u));
 }
 
-/** sk_cell() */
+/** sk_cell(): a bound that is no number is in cell 0 here too. */
 SK_FUNCTION sk_iN sk_cells_at(sk_fN f, sk_u32 dim) {
-    const sk_fN inside = sk_select_f((f > 0.0f) & (f < (float)dim), f, sk_same_f(0.0f));
-    return sk_select_i(f >= (float)dim, sk_same_i((sk_i32)dim - 1), sk_lanes_to_int(inside));
+    const sk_fN inside = sk_min_f(sk_max_f(sk_same_f(0.0f), f), sk_same_f((float)dim));
+    return sk_min_i(sk_lanes_to_int(inside), sk_same_i((sk_i32)dim - 1));
 }
 
 /** One axis of sk_box_of(): the first cell, how many there are, and whether rounding decides about neither end. */
@@ -64,8 +64,8 @@ SK_FUNCTION void sk_store_lanes(sk_iN v, sk_u32* target) { sk_store_i(v, (sk_i32
 
 /** sk_reach_by_box() of each lane as sk_reach_in_bin() has it, what lanes have to wait for the rule, and corners for that. */
 typedef struct sk_boxes_lanes {
-    sk_u32 words[4][SK_WIDTH]; /* of sk_reach */
-    sk_u32 xy[SK_WIDTH], z[SK_WIDTH], most[SK_WIDTH];
+    sk_iN words[4]; /* of sk_reach */
+    sk_iN xy, z, most;
     sk_u32 twos, threes, fours, large; /* bits of lanes: what waits is no more than so many cells wide */
 } sk_boxes_lanes;
 
@@ -95,13 +95,13 @@ SK_FUNCTION sk_boxes_lanes sk_boxes_of(SetkaGridHeader grid, sk_points_lanes poi
     const sk_iN kind = (is_in_bin & (sk_i32)SK_REACH_IN_BIN) | (is_rows & (sk_i32)SK_REACH_ROWS) |
                        (is_large & (sk_i32)SK_REACH_LARGE);
     sk_boxes_lanes r;
-    sk_store_lanes(low & is_run, r.words[0]);
-    sk_store_lanes(high & is_run, r.words[1]);
-    sk_store_lanes(sk_select_i(is_in_bin, bin, xy), r.words[2]);
-    sk_store_lanes(sk_select_i(is_in_bin, in_x | in_y << 4 | in_z << 8, z.first) | kind << 16, r.words[3]);
-    sk_store_lanes(xy, r.xy);
-    sk_store_lanes(z.first, r.z);
-    sk_store_lanes(most, r.most);
+    r.words[0] = low & is_run;
+    r.words[1] = high & is_run;
+    r.words[2] = sk_select_i(is_in_bin, bin, xy);
+    r.words[3] = sk_select_i(is_in_bin, in_x | in_y << 4 | in_z << 8, z.first) | kind << 16;
+    r.xy = xy;
+    r.z = z.first;
+    r.most = most;
     r.twos = sk_lane_bits(~is_run & (most <= 2));
     r.threes = sk_lane_bits(~is_run & (most == 3));
     r.fours = sk_lane_bits(~is_run & (most == 4));
@@ -181,10 +181,35 @@ SK_FUNCTION sk_planes_lanes sk_planes_of(sk_iN first, sk_iN dim, const int cells
     return r;
 }
 
-/** Bits w + 4 u + 16 v of the cells at the corner, and which axis w is: 0, 1 or 2. */
-typedef struct sk_rule_lanes {
-    sk_u32 low[SK_WIDTH], high[SK_WIDTH], axis[SK_WIDTH];
-} sk_rule_lanes;
+/** Masks of the cells at the corner. */
+typedef struct sk_masks_lanes {
+    sk_iN low, high;
+} sk_masks_lanes;
+
+/** Bits w + 4 u + 16 v as bits x + 4 y + 16 z, where w is an axis, x if neither is told, and u and v are the two others in ascending order. */
+SK_FUNCTION sk_masks_lanes sk_turn_masks(sk_masks_lanes masks, sk_iN is_y, sk_iN is_z) {
+    const sk_iN is_other = is_y | is_z;
+    sk_masks_lanes r = masks;
+    sk_iN t;
+    /* w and u change places */
+    t = (r.low ^ r.low >> 3) & 0x0a0a0a0a & is_other;
+    r.low ^= t ^ t << 3;
+    t = (r.low ^ r.low >> 6) & 0x00cc00cc & is_other;
+    r.low ^= t ^ t << 6;
+    t = (r.high ^ r.high >> 3) & 0x0a0a0a0a & is_other;
+    r.high ^= t ^ t << 3;
+    t = (r.high ^ r.high >> 6) & 0x00cc00cc & is_other;
+    r.high ^= t ^ t << 6;
+    /* then w and v */
+    t = (r.low ^ r.low >> 12) & 0x0000f0f0 & is_z;
+    r.low ^= t ^ t << 12;
+    t = (r.high ^ r.high >> 12) & 0x0000f0f0 & is_z;
+    r.high ^= t ^ t << 12;
+    t = (r.low >> 8 ^ r.high) & 0x00ff00ff & is_z;
+    r.low ^= t << 8;
+    r.high ^= t;
+    return r;
+}
 
 SK_FUNCTION sk_vec3N sk_choose3(sk_iN first, sk_vec3N a, sk_vec3N b) {
     return sk_make3_f(sk_select_f(first, a.x, b.x), sk_select_f(first, a.y, b.y), sk_select_f(first, a.z, b.z));
@@ -195,7 +220,7 @@ SK_FUNCTION sk_fN sk_largest_lanes(sk_vec3N a) {
 }
 
 /** The rule for triangles whose boxes are no more than `cells` wide, 2 to 4, from the corners on. */
-SK_FUNCTION sk_rule_lanes sk_rule_of(SetkaGridHeader grid, sk_points_lanes points, sk_iN corner_x, sk_iN corner_y,
+SK_FUNCTION sk_masks_lanes sk_rule_of(SetkaGridHeader grid, sk_points_lanes points, sk_iN corner_x, sk_iN corner_y,
                                      sk_iN corner_z, const int cells) {
     const float tolerance = grid.tolerance;
     const sk_vec3N p0 = points.p0, p1 = points.p1, p2 = points.p2;
@@ -231,7 +256,7 @@ SK_FUNCTION sk_rule_lanes sk_rule_of(SetkaGridHeader grid, sk_points_lanes point
     sk_interval_lanes columns[4];
     sk_fN middles[4];
     sk_iN words[2];
-    sk_rule_lanes r;
+    sk_masks_lanes r;
     words[0] = sk_same_i(0);
     words[1] = sk_same_i(0);
     for (int i = 0; i < cells; ++i) {
@@ -257,81 +282,86 @@ SK_FUNCTION sk_rule_lanes sk_rule_of(SetkaGridHeader grid, sk_points_lanes point
             words[j >> 1] |= bits & meets;
         }
     }
-    sk_store_lanes(words[0], r.low);
-    sk_store_lanes(words[1], r.high);
-    sk_store_lanes((along_y & 1) | (along_z & 2), r.axis);
-    return r;
+    r.low = words[0];
+    r.high = words[1];
+    return sk_turn_masks(r, along_y, along_z);
 }
 
-/** Bits w + 4 u + 16 v as bits x + 4 y + 16 z, where w is an axis and u and v are the two others in ascending order. */
-SK_FUNCTION sk_u64 sk_turn_mask(sk_u64 mask, sk_u32 axis) {
-    sk_u64 m = mask, t;
-    if (axis != 0u) { /* w and u change places */
-        t = (m ^ m >> 3) & ((sk_u64)0x0a0a0a0au << 32 | 0x0a0a0a0au);
-        m ^= t ^ t << 3;
-        t = (m ^ m >> 6) & ((sk_u64)0x00cc00ccu << 32 | 0x00cc00ccu);
-        m ^= t ^ t << 6;
-    }
-    if (axis == 2u) { /* then w and v */
-        t = (m ^ m >> 12) & ((sk_u64)0x0000f0f0u << 32 | 0x0000f0f0u);
-        m ^= t ^ t << 12;
-        t = (m ^ m >> 24) & (sk_u64)0xff00ff00u;
-        m ^= t ^ t << 24;
-    }
-    return m;
-}
+/** The triangles that are looked at before those that wait have their turn. */
+#define SK_CHUNK 128u
 
-/** Triangles that wait until there are as many as lanes, with the corners of their boxes. */
+/** Triangles that wait for the rule, with the corners of their boxes: fewer than lanes from the last turn, those of a chunk, and room to write more lanes than count. */
 typedef struct sk_waiting {
     sk_u32 count;
-    sk_u32 triangles[SK_WIDTH], xy[SK_WIDTH], z[SK_WIDTH];
+    sk_i32 triangles[SK_CHUNK + 2u * SK_WIDTH], xy[SK_CHUNK + 2u * SK_WIDTH], z[SK_CHUNK + 2u * SK_WIDTH];
 } sk_waiting;
 
-/** Finds the masks of those that wait, by the rule. */
+/** Lets those triangles wait whose bits are set. */
+SK_FUNCTION void sk_let_wait(sk_waiting* waiting, sk_u32 bits, sk_iN triangles, sk_iN xy, sk_iN z) {
+    if (bits != 0u) {
+        sk_put_i(waiting->triangles + waiting->count, bits, triangles);
+        sk_put_i(waiting->xy + waiting->count, bits, xy);
+        sk_put_i(waiting->z + waiting->count, bits, z);
+        waiting->count += sk_popcount(bits);
+    }
+}
+
+/** Finds the masks of those that wait, by the rule, while they fill all lanes; and with `end` of the rest too. */
 SK_FUNCTION void sk_reach_waiting(sk_waiting* waiting, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
-                                  SK_GLOBAL sk_reach* reaches, const int cells) {
-#define SK_NUMBER(k) (sk_i32) waiting->triangles[k]
-#define SK_XY(k) (sk_i32) waiting->xy[k]
-#define SK_Z(k) (sk_i32) waiting->z[k]
-    const sk_iN xy = SK_INTS(SK_XY);
-    const sk_rule_lanes rule = sk_rule_of(grid, sk_gather_cell_points(grid, triangles, SK_INTS(SK_NUMBER)), xy & 0xffff,
-                                          xy >> 16 & 0xffff, SK_INTS(SK_Z), cells);
-#undef SK_NUMBER
-#undef SK_XY
-#undef SK_Z
-    for (sk_u32 k = 0u; k < waiting->count; ++k) {
-        const sk_u64 mask = sk_turn_mask((sk_u64)rule.low[k] | (sk_u64)rule.high[k] << 32, rule.axis[k]);
-        SK_GLOBAL sk_reach* reach = reaches + waiting->triangles[k];
-        reach->mask_low = (sk_u32)mask;
-        reach->mask_high = (sk_u32)(mask >> 32);
+                                  SK_GLOBAL sk_reach* reaches, const int cells, const int end) {
+    const sk_u32 all = waiting->count;
+    sk_u32 first = 0u;
+    if (end && all % SK_WIDTH != 0u) /* lanes without a triangle of their own do the first one's again */
+        for (sk_u32 k = all; k < all + SK_WIDTH; ++k) {
+            waiting->triangles[k] = waiting->triangles[0];
+            waiting->xy[k] = waiting->xy[0];
+            waiting->z[k] = waiting->z[0];
+        }
+    for (; first + SK_WIDTH <= all || (end && first < all); first += SK_WIDTH) {
+        const sk_iN numbers = sk_load_i(waiting->triangles + first), xy = sk_load_i(waiting->xy + first);
+        const sk_masks_lanes masks = sk_rule_of(grid, sk_gather_cell_points(grid, triangles, numbers), xy & 0xffff,
+                                                xy >> 16 & 0xffff, sk_load_i(waiting->z + first), cells);
+        sk_u32 low[SK_WIDTH], high[SK_WIDTH];
+        sk_store_lanes(masks.low, low);
+        sk_store_lanes(masks.high, high);
+        for (sk_u32 k = 0u; k < SK_WIDTH; ++k) {
+            SK_GLOBAL sk_reach* reach = reaches + (sk_u32)waiting->triangles[first + k];
+            reach->mask_low = low[k];
+            reach->mask_high = high[k];
+        }
     }
-    waiting->count = 0u;
+    if (first < all && first != 0u) {
+        sk_store_i(sk_load_i(waiting->triangles + first), waiting->triangles);
+        sk_store_i(sk_load_i(waiting->xy + first), waiting->xy);
+        sk_store_i(sk_load_i(waiting->z + first), waiting->z);
+    }
+    waiting->count = first < all ? all - first : 0u;
 }
 
-/** Lets triangles start + k wait, for each bit k, and finds the masks of all that do as soon as they are enough. */
-SK_FUNCTION void sk_let_wait(sk_waiting* waiting, sk_u32 start, sk_u32 bits, const sk_boxes_lanes* boxes,
-                             SetkaGridHeader grid, SK_GLOBAL const float* triangles, SK_GLOBAL sk_reach* reaches,
-                             const int cells) {
-    for (sk_u32 rest = bits; rest != 0u; rest &= rest - 1u) {
-        const sk_u32 lane = sk_lowest_bit(rest), k = waiting->count;
-        waiting->triangles[k] = start + lane;
-        waiting->xy[k] = boxes->xy[lane];
-        waiting->z[k] = boxes->z[lane];
-        waiting->count = k + 1u;
-        if (k + 1u == SK_WIDTH) sk_reach_waiting(waiting, grid, triangles, reaches, cells);
+/** Stores the records of SK_WIDTH triangles, or of the first `count`. */
+SK_FUNCTION void sk_store_reaches(const sk_iN* words, sk_u32 count, SK_GLOBAL sk_reach* reaches) {
+    if (count == SK_WIDTH) {
+        sk_store_rows(words[0], words[1], words[2], words[3], (SK_GLOBAL sk_i32*)reaches);
+    } else {
+        sk_u32 lanes[4][SK_WIDTH];
+        for (sk_u32 w = 0u; w < 4u; ++w) sk_store_lanes(words[w], lanes[w]);
+        for (sk_u32 k = 0u; k < count; ++k) {
+            sk_reach reach;
+            reach.mask_low = lanes[0][k];
+            reach.mask_high = lanes[1][k];
+            reach.corner_xy = lanes[2][k];
+            reach.corner_z = lanes[3][k];
+            reaches[k] = reach;
+        }
     }
 }
 
-/** Finds the masks of those that are left. Lanes that stay empty have a triangle that is there. */
-SK_FUNCTION void sk_reach_rest(sk_waiting* waiting, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
-                               SK_GLOBAL sk_reach* reaches, const int cells) {
-    if (waiting->count == 0u) return;
-    for (sk_u32 k = waiting->count; k < SK_WIDTH; ++k) {
-        waiting->triangles[k] = waiting->triangles[0];
-        waiting->xy[k] = waiting->xy[0];
-        waiting->z[k] = waiting->z[0];
-    }
-    sk_reach_waiting(waiting, grid, triangles, reaches, cells);
+/** How many cells wide the triangles of these lanes are, in units of SK_LONG_ROW. */
+SK_FUNCTION sk_u32 sk_units_of(sk_iN most, sk_u32 lanes) {
+    sk_u32 wide[SK_WIDTH], units = 0u;
+    sk_store_lanes(most, wide);
+    for (sk_u32 rest = lanes; rest != 0u; rest &= rest - 1u) units += wide[sk_lowest_bit(rest)] / SK_LONG_ROW;
+    return units;
 }
 
 /** The reaches of triangles first to end - 1, and in how many cells large ones are at least, in units of SK_LONG_ROW. */
@@ -344,32 +374,26 @@ SK_FUNCTION sk_u64 sk_find_reaches(sk_u32 first, sk_u32 end, SetkaGridHeader gri
     fours.count = 0u;
     for (sk_u32 start = first; start < end; start += SK_WIDTH) {
         const sk_u32 count = sk_min_u32(end - start, SK_WIDTH), lanes = (2u << (count - 1u)) - 1u;
-        sk_points_lanes points;
-        sk_boxes_lanes boxes;
 #define SK_NEXT(k) (sk_i32)(start + ((k) < count ? (k) : 0u))
-        if (count == SK_WIDTH)
-            points = sk_load_cell_points_lanes(grid, triangles + (size_t)start * 9u);
-        else
-            points = sk_gather_cell_points(grid, triangles, SK_INTS(SK_NEXT));
+        const sk_iN numbers = SK_INTS(SK_NEXT);
 #undef SK_NEXT
-        boxes = sk_boxes_of(grid, points);
-        for (sk_u32 k = 0u; k < count; ++k) {
-            sk_reach reach;
-            reach.mask_low = boxes.words[0][k];
-            reach.mask_high = boxes.words[1][k];
-            reach.corner_xy = boxes.words[2][k];
-            reach.corner_z = boxes.words[3][k];
-            reaches[start + k] = reach;
+        const sk_points_lanes points = count == SK_WIDTH ? sk_load_cell_points_lanes(grid, triangles + (size_t)start * 9u)
+                                                         : sk_gather_cell_points(grid, triangles, numbers);
+        const sk_boxes_lanes boxes = sk_boxes_of(grid, points);
+        for (sk_u32 k = 0u; k < 9u * SK_WIDTH; k += 16u) sk_prefetch(triangles + ((size_t)(start + SK_CHUNK) * 9u + k)); /* of the next chunk */
+        for (sk_u32 k = 0u; k < SK_WIDTH; k += 4u) sk_prefetch(reaches + (start + 2u * SK_WIDTH + k));
+        const int is_last = start + SK_WIDTH >= end;
+        sk_store_reaches(boxes.words, count, reaches + start);
+        if ((boxes.large & lanes) != 0u) units += sk_units_of(boxes.most, boxes.large & lanes);
+        sk_let_wait(&twos, boxes.twos & lanes, numbers, boxes.xy, boxes.z);
+        sk_let_wait(&threes, boxes.threes & lanes, numbers, boxes.xy, boxes.z);
+        sk_let_wait(&fours, boxes.fours & lanes, numbers, boxes.xy, boxes.z);
+        if (is_last || (start + SK_WIDTH - first) % SK_CHUNK == 0u) {
+            sk_reach_waiting(&twos, grid, triangles, reaches, 2, is_last);
+            sk_reach_waiting(&threes, grid, triangles, reaches, 3, is_last);
+            sk_reach_waiting(&fours, grid, triangles, reaches, 4, is_last);
         }
-        for (sk_u32 k = 0u, large = boxes.large & lanes; large != 0u; ++k, large >>= 1)
-            units += (large & 1u) != 0u ? boxes.most[k] / SK_LONG_ROW : 0u;
-        sk_let_wait(&twos, start, boxes.twos & lanes, &boxes, grid, triangles, reaches, 2);
-        sk_let_wait(&threes, start, boxes.threes & lanes, &boxes, grid, triangles, reaches, 3);
-        sk_let_wait(&fours, start, boxes.fours & lanes, &boxes, grid, triangles, reaches, 4);
     }
-    sk_reach_rest(&twos, grid, triangles, reaches, 2);
-    sk_reach_rest(&threes, grid, triangles, reaches, 3);
-    sk_reach_rest(&fours, grid, triangles, reaches, 4);
     return units;
 }
 
