@@ -2,7 +2,12 @@
 /// Is every byte counted, given back, and refused where a budget ends?
 #include <gmock/gmock.h>
 
+#include <fstream>
 #include <numeric>
+
+#if defined(__linux__)
+#include <unistd.h>
+#endif
 
 #include "setka/error.hpp"
 #include "support/devices.hpp"
@@ -100,5 +105,34 @@ TEST_P(Memory, ReuseInOneQueueKeepsItsOrder) {
     }
     EXPECT_EQ(device.memory_in_use_bytes(), 0u);
 }
+
+#if defined(__linux__)
+/// Bytes of this process that are in memory.
+std::uint64_t resident_bytes() {
+    std::ifstream file("/proc/self/statm");
+    std::uint64_t all = 0, resident = 0;
+    file >> all >> resident;
+    return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+TEST_P(Memory, WhatIsTrimmedGoesBackToTheSystem) {
+    const Device device = Device::open(GetParam());
+    setka::Queue queue = device.make_queue();
+    constexpr std::size_t size = 16'000'001, rounds = 12;  // 64 MB, and a part of a page of any size
+    std::vector<std::uint32_t> values(size);
+    std::iota(values.begin(), values.end(), 1u);
+    const std::uint64_t before = resident_bytes();
+    for (std::size_t round = 0; round < rounds; ++round) {
+        values[0] = static_cast<std::uint32_t>(round);
+        {
+            const auto buffer = queue.upload(std::span(std::as_const(values)), "round");
+            EXPECT_EQ(queue.download(buffer), values);
+        }
+        device.trim();
+    }
+    // A checker may hold back some of what is freed.
+    EXPECT_LT(resident_bytes(), before + rounds * size * sizeof(std::uint32_t) / 2);
+}
+#endif
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "backend/opencl/large_pages.hpp"
 #include "backend/pooled_memory.hpp"
 #include "core/settings.hpp"
 
@@ -98,7 +99,11 @@ OpenClQueue::~OpenClQueue() {
 std::shared_ptr<Memory> OpenClQueue::allocate(std::uint64_t size_bytes, std::string_view name) {
     const auto what = [&] { return "allocating '" + std::string(name) + "' (" + std::to_string(size_bytes) + " bytes)"; };
     return allocate_pooled<OpenClMemory>(device_, pool_, size_bytes, name, [&](std::uint64_t pooled_bytes) {
-        return guarded(what, [&] { return cl::Buffer(device_->context(), CL_MEM_READ_WRITE, pooled_bytes); });
+        return guarded(what, [&] {
+            if (cl::Buffer buffer; device_->width() > 1 && (buffer = make_large_page_buffer(device_->context(), pooled_bytes))())
+                return buffer;
+            return cl::Buffer(device_->context(), CL_MEM_READ_WRITE, pooled_bytes);
+        });
     });
 }
 

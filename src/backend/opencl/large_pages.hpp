@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+/// How does a device that is the CPU get its buffers in large pages? Drivers take what malloc() has, in pages of 4 KiB, so that every list of
+/// a cell is another page and most of them miss the first table of pages.
+#pragma once
+
+#include <cstdint>
+
+#include "backend/opencl/opencl.hpp"
+
+namespace setka::backend {
+
+/// A buffer in memory of our own, for which the system is asked to take large pages; nothing if there is no such memory, or it is too small
+/// for that. The memory is freed when the driver is through with the buffer. Throws cl::Error.
+[[nodiscard]] cl::Buffer make_large_page_buffer(const cl::Context& context, std::uint64_t size_bytes);
+
+}  // namespace setka::backend
