@@ -182,22 +182,30 @@ SK_FUNCTION int sk_have_too_many(sk_u64 units, sk_u32 most_units, SK_GLOBAL sk_u
 }
 
 /**
- * Hands over the pairs of triangles first to end - 1. Those without a mask are counted until they are known to be more than any grid may have:
- * it is refused then, so that what other work-items see of that changes nothing else.
+ * Hands over the pairs of triangle i. Those without a mask are counted until they are known to be more than any grid may have: it is refused
+ * then, so that what other work-items see of that changes nothing else.
  */
-SK_FUNCTION void sk_hand_over_run(sk_run_of_triangles run, sk_u32 first, sk_u32 end, SetkaGridHeader grid,
-                                  SK_GLOBAL const float* triangles, SK_GLOBAL const sk_reach* reaches,
-                                  SK_GLOBAL sk_u32* report, const int put) {
-    for (sk_u32 i = first; i < end; ++i) {
-        const sk_reach reach = reaches[i];
-        if (sk_reach_kind(reach) == SK_REACH_IN_BIN) {
-            sk_hand_over_bin(run, reach.corner_xy, reach.corner_z & 0xffffu, sk_reach_mask(reach), i, put);
-        } else if (sk_reach_kind(reach) == SK_REACH_MASK) {
-            sk_hand_over_mask(run, reach, i, put);
-        } else {
-            sk_hand_over_rows(run, grid, sk_load_cell_triangle(grid, triangles + (size_t)i * 9u), i, report, put);
-        }
+SK_FUNCTION void sk_hand_over(sk_run_of_triangles run, sk_u32 i, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
+                              SK_GLOBAL const sk_reach* reaches, SK_GLOBAL sk_u32* report, const int put) {
+    const sk_reach reach = reaches[i];
+    if (sk_reach_kind(reach) == SK_REACH_IN_BIN) {
+        sk_hand_over_bin(run, reach.corner_xy, reach.corner_z & 0xffffu, sk_reach_mask(reach), i, put);
+    } else if (sk_reach_kind(reach) == SK_REACH_MASK) {
+        sk_hand_over_mask(run, reach, i, put);
+    } else {
+        sk_hand_over_rows(run, grid, sk_load_cell_triangle(grid, triangles + (size_t)i * 9u), i, report, put);
     }
+}
+
+/** Counts the pairs of triangles first to end - 1: two at a time from far apart, as those beside each other wait for the counter of the same bin. */
+SK_FUNCTION void sk_count_pairs(sk_run_of_triangles run, sk_u32 first, sk_u32 end, SetkaGridHeader grid,
+                                SK_GLOBAL const float* triangles, SK_GLOBAL const sk_reach* reaches, SK_GLOBAL sk_u32* report) {
+    const sk_u32 each = (end - first) / 2u;
+    for (sk_u32 k = 0u; k < each; ++k) {
+        sk_hand_over(run, first + k, grid, triangles, reaches, report, 0);
+        sk_hand_over(run, first + each + k, grid, triangles, reaches, report, 0);
+    }
+    if (first + 2u * each < end) sk_hand_over(run, end - 1u, grid, triangles, reaches, report, 0);
 }
 
 /**
@@ -212,7 +220,7 @@ SK_FUNCTION void sk_count_run(sk_u32 r, sk_u32 length, sk_u32 bins, SetkaGridHea
     for (sk_u32 b = 0u; b < bins; ++b) own[b] = 0u;
     if (sk_block_count(run.bins) <= bins) {
         if (!sk_have_too_many(sk_find_reaches(first, end, grid, triangles, reaches), most_units, report))
-            sk_hand_over_run(run, first, end, grid, triangles, reaches, report, 0);
+            sk_count_pairs(run, first, end, grid, triangles, reaches, report);
     }
 }
 
@@ -222,7 +230,8 @@ SK_FUNCTION void sk_fill_run(sk_u32 r, sk_u32 length, sk_u32 bins, SetkaGridHead
                              SK_GLOBAL sk_u32* numbers, SK_GLOBAL sk_u32* report) {
     const sk_u32 first = r * length, end = sk_min_u32(first + length, grid.triangle_count);
     const sk_run_of_triangles run = sk_make_run(next + (size_t)r * bins, cells, numbers, grid);
-    if (sk_block_count(run.bins) <= bins) sk_hand_over_run(run, first, end, grid, triangles, reaches, report, 1);
+    if (sk_block_count(run.bins) <= bins)
+        for (sk_u32 i = first; i < end; ++i) sk_hand_over(run, i, grid, triangles, reaches, report, 1);
 }
 
 /** A part of the bins, whose counts are made places by one work-item. */
