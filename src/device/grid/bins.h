@@ -200,7 +200,7 @@ SK_FUNCTION void sk_hand_over(sk_run_of_triangles run, sk_u32 i, SetkaGridHeader
 /** Counts the pairs of triangles first to end - 1: two at a time from far apart, as those beside each other wait for the counter of the same bin. */
 SK_FUNCTION void sk_count_pairs(sk_run_of_triangles run, sk_u32 first, sk_u32 end, SetkaGridHeader grid,
                                 SK_GLOBAL const float* triangles, SK_GLOBAL const sk_reach* reaches, SK_GLOBAL sk_u32* report) {
-    const sk_u32 each = (end - first) / 2u;
+    const sk_u32 each = first < end ? (end - first) / 2u : 0u; /* a grid of zeros has no triangles, and ends before most runs begin */
     for (sk_u32 k = 0u; k < each; ++k) {
         sk_hand_over(run, first + k, grid, triangles, reaches, report, 0);
         sk_hand_over(run, first + each + k, grid, triangles, reaches, report, 0);
