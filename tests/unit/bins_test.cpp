@@ -67,4 +67,16 @@ TEST(Bins, GetEachPairOnce) {
     EXPECT_GT(in_several, 1000u);
 }
 
+/// As where the device makes no grid: the host counts again then, and until then nothing may be touched that is not the run's.
+TEST(Bins, RunsOfAGridWithoutTrianglesCountNothing) {
+    const SetkaGridHeader none{};
+    constexpr sk_u32 bins = 5, runs = 4, length = 100;
+    for (sk_u32 r = 0; r < runs; ++r) {
+        std::vector<sk_u32> counts(runs * bins, guard), report(SK_REPORT, 0);
+        sk_count_run(r, length, bins, none, nullptr, nullptr, counts.data(), 1000, report.data());
+        sk_fill_run(r, length, bins, none, nullptr, nullptr, counts.data(), nullptr, nullptr, report.data());
+        for (sk_u32 i = 0; i < runs * bins; ++i) ASSERT_EQ(counts[i], i / bins == r ? 0u : guard);
+    }
+}
+
 }  // namespace
