@@ -59,7 +59,7 @@ TEST(HostDevice, IsSharedByThreads) {
     const oracle::World world = oracle::make_world(scene);
     const auto rays = support::adversarial_rays(world, 200, 3);
     const auto right = oracle::closest_hits(world, rays);
-    std::vector<std::vector<setka::Hit>> hits(4);
+    std::vector<std::vector<setka::Hit>> hits(3);  // four may need more than the memory that the device says it has, all at once
     {
         std::vector<std::jthread> threads;
         for (auto& own : hits)
