@@ -31,7 +31,7 @@
  * included, `mask ? a : b` with a mask of all bits or none, and:
  *   sk_fN sk_iN sk_f4        SK_WIDTH floats, as many sk_i32, 4 floats
  *   sk_make_f(a, …) sk_make_i(a, …) sk_lane(v, k)                k is a constant
- *   sk_prefetch(p)                                               what p points to will be read soon
+ *   sk_prefetch(p)                                               what p points to will be read or written soon
  *   sk_load_f4(p) sk_store_f4(v, p)                              global memory, aligned as one number is
  *   sk_store_i4(v, p)                                            4 sk_i32, as a shuffle gives them; the same
  *   sk_store_f(v, p) sk_store_i(v, p) sk_load_i(p)               of SK_WIDTH, in private memory too

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// How does a device that is the CPU get its buffers in large pages? Drivers take what malloc() has, in pages of 4 KiB, so that every list of
-/// a cell is another page and most of them miss the first table of pages.
+/// How does a device that is the CPU get its buffers in large pages? Drivers take what malloc() has, in pages of 4 KiB, of which a processor
+/// keeps too few in mind for triangles and lists that rays come to in any order.
 #pragma once
 
 #include <cstdint>

@@ -100,9 +100,11 @@ std::shared_ptr<Memory> OpenClQueue::allocate(std::uint64_t size_bytes, std::str
     const auto what = [&] { return "allocating '" + std::string(name) + "' (" + std::to_string(size_bytes) + " bytes)"; };
     return allocate_pooled<OpenClMemory>(device_, pool_, size_bytes, name, [&](std::uint64_t pooled_bytes) {
         return guarded(what, [&] {
-            if (cl::Buffer buffer; device_->width() > 1 && (buffer = make_large_page_buffer(device_->context(), pooled_bytes))())
-                return buffer;
-            return cl::Buffer(device_->context(), CL_MEM_READ_WRITE, pooled_bytes);
+            cl::Buffer buffer;
+            // Where kernels have lanes the device is a CPU, and its driver is known to work in memory that it is given.
+            if (device_->width() > 1) buffer = make_large_page_buffer(device_->context(), pooled_bytes);
+            if (!buffer()) buffer = cl::Buffer(device_->context(), CL_MEM_READ_WRITE, pooled_bytes);
+            return buffer;
         });
     });
 }

@@ -186,28 +186,26 @@ typedef struct sk_masks_lanes {
     sk_iN low, high;
 } sk_masks_lanes;
 
+/** Where `where` is set, each of these bits and the one so far above it change places. */
+SK_FUNCTION sk_iN sk_exchange_bits(sk_iN a, const sk_i32 bits, const sk_i32 distance, sk_iN where) {
+    const sk_iN differ = (a ^ a >> distance) & bits & where;
+    return a ^ differ ^ differ << distance;
+}
+
 /** Bits w + 4 u + 16 v as bits x + 4 y + 16 z, where w is an axis, x if neither is told, and u and v are the two others in ascending order. */
 SK_FUNCTION sk_masks_lanes sk_turn_masks(sk_masks_lanes masks, sk_iN is_y, sk_iN is_z) {
     const sk_iN is_other = is_y | is_z;
-    sk_masks_lanes r = masks;
-    sk_iN t;
+    sk_masks_lanes r;
+    sk_iN differ;
     /* w and u change places */
-    t = (r.low ^ r.low >> 3) & 0x0a0a0a0a & is_other;
-    r.low ^= t ^ t << 3;
-    t = (r.low ^ r.low >> 6) & 0x00cc00cc & is_other;
-    r.low ^= t ^ t << 6;
-    t = (r.high ^ r.high >> 3) & 0x0a0a0a0a & is_other;
-    r.high ^= t ^ t << 3;
-    t = (r.high ^ r.high >> 6) & 0x00cc00cc & is_other;
-    r.high ^= t ^ t << 6;
-    /* then w and v */
-    t = (r.low ^ r.low >> 12) & 0x0000f0f0 & is_z;
-    r.low ^= t ^ t << 12;
-    t = (r.high ^ r.high >> 12) & 0x0000f0f0 & is_z;
-    r.high ^= t ^ t << 12;
-    t = (r.low >> 8 ^ r.high) & 0x00ff00ff & is_z;
-    r.low ^= t << 8;
-    r.high ^= t;
+    r.low = sk_exchange_bits(sk_exchange_bits(masks.low, 0x0a0a0a0a, 3, is_other), 0x00cc00cc, 6, is_other);
+    r.high = sk_exchange_bits(sk_exchange_bits(masks.high, 0x0a0a0a0a, 3, is_other), 0x00cc00cc, 6, is_other);
+    /* then w and v, from word to word at last */
+    r.low = sk_exchange_bits(r.low, 0x0000f0f0, 12, is_z);
+    r.high = sk_exchange_bits(r.high, 0x0000f0f0, 12, is_z);
+    differ = (r.low >> 8 ^ r.high) & 0x00ff00ff & is_z;
+    r.low ^= differ << 8;
+    r.high ^= differ;
     return r;
 }
 
@@ -380,9 +378,10 @@ SK_FUNCTION sk_u64 sk_find_reaches(sk_u32 first, sk_u32 end, SetkaGridHeader gri
         const sk_points_lanes points = count == SK_WIDTH ? sk_load_cell_points_lanes(grid, triangles + (size_t)start * 9u)
                                                          : sk_gather_cell_points(grid, triangles, numbers);
         const sk_boxes_lanes boxes = sk_boxes_of(grid, points);
-        for (sk_u32 k = 0u; k < 9u * SK_WIDTH; k += 16u) sk_prefetch(triangles + ((size_t)(start + SK_CHUNK) * 9u + k)); /* of the next chunk */
-        for (sk_u32 k = 0u; k < SK_WIDTH; k += 4u) sk_prefetch(reaches + (start + 2u * SK_WIDTH + k));
         const int is_last = start + SK_WIDTH >= end;
+        /* Line by line: what the next chunk reads, and what is written the time after next. */
+        for (sk_u32 k = 0u; k < 9u * SK_WIDTH; k += 16u) sk_prefetch(triangles + ((size_t)(start + SK_CHUNK) * 9u + k));
+        for (sk_u32 k = 0u; k < SK_WIDTH; k += 4u) sk_prefetch(reaches + (start + 2u * SK_WIDTH + k));
         sk_store_reaches(boxes.words, count, reaches + start);
         if ((boxes.large & lanes) != 0u) units += sk_units_of(boxes.most, boxes.large & lanes);
         sk_let_wait(&twos, boxes.twos & lanes, numbers, boxes.xy, boxes.z);
