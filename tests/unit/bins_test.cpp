@@ -71,10 +71,13 @@ TEST(Bins, GetEachPairOnce) {
 TEST(Bins, RunsOfAGridWithoutTrianglesCountNothing) {
     const SetkaGridHeader none{};
     constexpr sk_u32 bins = 5, runs = 4, length = 100;
+    const std::vector<float> triangles(runs * length * 9);
     for (sk_u32 r = 0; r < runs; ++r) {
-        std::vector<sk_u32> counts(runs * bins, guard), report(SK_REPORT, 0);
-        sk_count_run(r, length, bins, none, nullptr, nullptr, counts.data(), 1000, report.data());
-        sk_fill_run(r, length, bins, none, nullptr, nullptr, counts.data(), nullptr, nullptr, report.data());
+        std::vector<sk_u32> counts(runs * bins, guard), report(SK_REPORT, 0), numbers(1);
+        std::vector<sk_u16> cells(1);
+        std::vector<sk_reach> reaches(runs * length);
+        sk_count_run(r, length, bins, none, triangles.data(), reaches.data(), counts.data(), 1000, report.data());
+        sk_fill_run(r, length, bins, none, triangles.data(), reaches.data(), counts.data(), cells.data(), numbers.data(), report.data());
         for (sk_u32 i = 0; i < runs * bins; ++i) ASSERT_EQ(counts[i], i / bins == r ? 0u : guard);
     }
 }
