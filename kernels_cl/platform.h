@@ -48,7 +48,6 @@
 typedef uint sk_u32;
 typedef int sk_i32;
 typedef ulong sk_u64;
-typedef ushort sk_u16;
 
 #define sk_global_id() ((sk_u32)get_global_id(0))
 #define sk_local_id() ((sk_u32)get_local_id(0))
@@ -70,6 +69,8 @@ typedef ushort sk_u16;
 
 #if SK_WIDTH > 1
 typedef float4 sk_f4;
+typedef int4 sk_i4;
+#define sk_make_i4(a, b, c, d) ((int4)((a), (b), (c), (d)))
 #if SK_WIDTH == 16u
 typedef float16 sk_fN;
 typedef int16 sk_iN;
@@ -125,25 +126,22 @@ typedef int8 sk_iN;
 #else
 #define sk_lane_bits(mask) ((sk_u32)sk_lanes_or((mask) & (int8)(1, 2, 4, 8, 16, 32, 64, 128)))
 #endif
-#if SK_WIDTH == 16u && defined(__AVX512F__) && __has_builtin(__builtin_ia32_pmovdw512mem_mask) && \
-    __has_builtin(__builtin_ia32_compresssi512_mask) && __has_builtin(__builtin_ia32_storedqusi512_mask)
-/* These instructions write no element but those asked for. Their functions know no address spaces. */
-#define sk_put_u16(target, bits, i)                                                                                                    \
-    __builtin_ia32_pmovdw512mem_mask((void*)(uintptr_t)(target), __builtin_ia32_compresssi512_mask((i), (int16)(0), (ushort)(bits)), \
-                                     (ushort)((1u << popcount((uint)(bits))) - 1u))
-#define sk_put_i(target, bits, i) vstore16(__builtin_ia32_compresssi512_mask((i), (int16)(0), (ushort)(bits)), 0, target)
-#define sk_put_some(target, n, i) __builtin_ia32_storedqusi512_mask((void*)(uintptr_t)(target), (i), (ushort)((1u << (n)) - 1u))
-#elif SK_WIDTH == 16u
-#define sk_put_u16(target, bits, i)                                           \
-    for (uint sk_rest = (bits), sk_n = 0u; sk_rest != 0u; sk_rest &= sk_rest - 1u) \
-    (target)[sk_n++] = (ushort)(i)[popcount((sk_rest & (0u - sk_rest)) - 1u)]
-#define sk_put_some(target, n, i) \
-    for (uint sk_n = 0u; sk_n < (n); ++sk_n) (target)[sk_n] = (uint)(i)[sk_n]
-#endif
-#ifndef sk_put_i
+#if SK_WIDTH == 16u && defined(__AVX512F__) && __has_builtin(__builtin_ia32_compresssi512_mask)
+/* vstore16 is four parts here. */
+typedef int16 sk_iN_anywhere __attribute__((aligned(4)));
+#define sk_put_i(target, bits, i) \
+    (*(sk_iN_anywhere*)(target) = __builtin_ia32_compresssi512_mask((i), (int16)(0), (ushort)(bits)))
+#else
 #define sk_put_i(target, bits, i)                                             \
     for (uint sk_rest = (bits), sk_n = 0u; sk_rest != 0u; sk_rest &= sk_rest - 1u) \
     (target)[sk_n++] = (i)[popcount((sk_rest & (0u - sk_rest)) - 1u)]
+#endif
+#if defined(__AVX512VL__) && __has_builtin(__builtin_ia32_storedqusi128_mask)
+/* This instruction writes no element but those asked for. Its function knows no address spaces. */
+#define sk_put_i4(target, n, v) __builtin_ia32_storedqusi128_mask((void*)(uintptr_t)(target), (v), (uchar)((1u << (n)) - 1u))
+#else
+#define sk_put_i4(target, n, v) \
+    for (uint sk_n = 0u; sk_n < (n); ++sk_n) (target)[sk_n] = (uint)(v)[sk_n]
 #endif
 #endif
 

@@ -23,7 +23,6 @@
 typedef unsigned int sk_u32;
 typedef int sk_i32;
 typedef unsigned long long sk_u64;
-typedef unsigned short sk_u16;
 
 #define sk_global_id() (blockIdx.x * blockDim.x + threadIdx.x)
 #define sk_local_id() (threadIdx.x)

@@ -39,7 +39,7 @@ BinRoom divided(const Device& device, std::uint32_t triangles, BinRoom room) {
     const std::uint32_t shares = 16 * std::max(1u, device.info().compute_units);
     const std::uint64_t runs = prefers_bins(device) ? std::max(64u, shares) : divide_up(triangles, shortest);
     const std::uint64_t most_runs = std::clamp<std::uint64_t>(most_counters / room.bins, 1, runs);
-    room.run = static_cast<std::uint32_t>(std::max<std::uint64_t>(shortest, divide_up(triangles, most_runs)));
+    room.run = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(divide_up(triangles, most_runs), shortest, SK_SPAN));
     room.runs = static_cast<std::uint32_t>(divide_up(triangles, room.run));
     room.items = prefers_bins(device) ? std::min({room.bins, shares, most_items}) : room.bins;
     return room;
@@ -71,14 +71,14 @@ BinRoom usual_room(const Device& device, std::uint32_t triangles, const GridOpti
 /// The bytes that both counting and placing hold, world triangles not included.
 std::uint64_t kept_bytes(const Device& device, const BinRoom& room) {
     return report_bytes + block_sums_bytes(device, room.blocks) +
-           (room.bins + std::uint64_t(1) + divide_up(room.pairs, 2) + room.pairs +
-            std::uint64_t(room.items) * SK_BIN_CELLS + room.blocks + room.blocks * block_words) *
+           (std::uint64_t(room.runs) * room.bins + room.bins + std::uint64_t(1) + room.pairs +
+            std::uint64_t(room.items) * SK_BIN_CELLS + 2 * std::uint64_t(room.bins) + room.blocks * block_words) *
                word;
 }
 
 /// The bytes that counting holds, world triangles not included.
 std::uint64_t count_bytes(const Device& device, std::uint32_t triangles, const BinRoom& room) {
-    return kept_bytes(device, room) + (triangles * reach_words + std::uint64_t(room.runs) * room.bins) * word +
+    return kept_bytes(device, room) + triangles * reach_words * word +
            divide_up(room.bins, SK_BIN_PART) * sizeof(std::uint64_t);
 }
 
@@ -140,24 +140,21 @@ BinnedCount enqueue_count(Queue& queue, const WorldGeometry& geometry, const Buf
 void enqueue_bins(Queue& queue, const WorldGeometry& geometry, BinnedCount& count) {
     const BinRoom& room = count.room;
     queue.impl().begin_stage("bins");
-    count.pair_cells = queue.make_buffer<std::uint32_t>(divide_up(room.pairs, 2), "cells of pairs");
-    count.pair_triangles = queue.make_buffer<std::uint32_t>(room.pairs, "triangles of pairs");
-    launch_runs(queue, Kernel::bins_fill, room, room.pairs, geometry.triangles, count.reaches, count.run_counts,
-                count.pair_cells, count.pair_triangles, count.report);
+    count.pairs = queue.make_buffer<std::uint32_t>(room.pairs, "pairs in bins");
+    launch_runs(queue, Kernel::bins_fill, room, room.pairs, geometry.triangles, count.reaches, count.run_counts, count.pairs, count.report);
     queue.impl().begin_stage("blocks");
     count.counters = queue.make_buffer<std::uint32_t>(std::uint64_t(room.items) * SK_BIN_CELLS, "counters of bins");
-    count.marks = queue.make_buffer<std::uint32_t>(room.blocks, "marks of blocks");
+    count.filled = queue.make_buffer<std::uint64_t>(room.bins, "filled blocks of bins");
     count.blocks = queue.make_buffer<std::uint32_t>(room.blocks * block_words, "counted blocks");
-    queue.impl().fill(*count.marks.memory(), 0, count.marks.size_bytes());
-    launch_bins(queue, Kernel::bins_tally, room.bins, room.items, room.pairs, room.blocks, count.starts,
-                count.pair_cells, count.counters, count.blocks, count.marks, count.report);
+    launch_bins(queue, Kernel::bins_tally, room.bins, room.items, room.pairs, room.blocks, count.starts, count.pairs, count.counters,
+                count.blocks, count.filled, count.report);
     count.block_sums = enqueue_block_sums(queue, count.blocks, count.report);
 }
 
 /// What is left of a count whose bins have had no room for all pairs.
 BinnedCount without_bins(BinnedCount count) {
-    count.pair_cells = count.pair_triangles = count.counters = count.marks = count.blocks = {};
-    count.block_sums = {};
+    count.pairs = count.counters = count.blocks = {};
+    count.filled = count.block_sums = {};
     return count;
 }
 
@@ -238,7 +235,6 @@ std::optional<BinnedCount> finish_bins(Queue& queue, const WorldGeometry& geomet
     };
     if (!has_space() && (!count_again(0) || !fill_bins() || !has_space())) return {};
     count.reaches = {};
-    count.run_counts = {};
     count.part_sums = {};
     return count;
 }
@@ -260,8 +256,8 @@ CompactTables build_binned(Queue& queue, const ::SetkaGridHeader& header, Binned
     tables.references = queue.make_buffer<std::uint32_t>(header.reference_count, "references");
     enqueue_block_starts(queue, count.block_sums, count.blocks);
     queue.impl().begin_stage("lists");
-    launch_bins(queue, Kernel::bins_place, bin_count(header), count.room.items, header, count.starts, count.pair_cells,
-                count.pair_triangles, count.counters, count.blocks, count.marks, tables.blocks, tables.cells,
+    launch_bins(queue, Kernel::bins_place, bin_count(header), count.room.items, count.room.run, count.room.runs, count.room.bins, header,
+                count.starts, count.run_counts, count.pairs, count.counters, count.blocks, count.filled, tables.blocks, tables.cells,
                 tables.references);
     tables.longest_list = count.longest_list;
     return tables;

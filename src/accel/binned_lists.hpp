@@ -28,13 +28,12 @@ struct BinnedCount {
     BinRoom room;
     Buffer<std::uint32_t> report;
     Buffer<std::uint32_t> reaches;       ///< 4 words a triangle
-    Buffer<std::uint32_t> run_counts;    ///< of pairs, for each bin in each run
+    Buffer<std::uint32_t> run_counts;    ///< of pairs, for each bin in each run; where they end there, once they are in bins
     Buffer<std::uint64_t> part_sums;     ///< of SK_BIN_PART bins
     Buffer<std::uint32_t> starts;        ///< of bins
-    Buffer<std::uint32_t> pair_cells;    ///< two a word
-    Buffer<std::uint32_t> pair_triangles;
+    Buffer<std::uint32_t> pairs;
     Buffer<std::uint32_t> counters;      ///< of a bin, for each work-item
-    Buffer<std::uint32_t> marks;         ///< of blocks
+    Buffer<std::uint64_t> filled;        ///< a bit for each block of a bin
     Buffer<std::uint32_t> blocks;        ///< counted ones; a grid's own are made of them
     Buffer<std::uint64_t> block_sums;
 };

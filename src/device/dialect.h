@@ -18,7 +18,7 @@
  *                            again and compares may depend on it (an integer for #if)
  *   SK_UNROLL(times)         before a loop: how often its body is to be written out, 1 or 2
  *   SK_BARRIER()             all work-items of the group; orders local memory; in uniform control flow only
- *   sk_u32 sk_i32 sk_u64     integers; sk_u16 in tables only
+ *   sk_u32 sk_i32 sk_u64     integers
  *   sk_global_id() sk_local_id() sk_group_id() sk_local_size()   as sk_u32
  *   sk_float_bits(f) sk_bits_float(u)                            bit casts
  *   sk_double_bits(d) sk_bits_double(u)                          the same of sk_u64, where SK_DOUBLE
@@ -29,8 +29,8 @@
  *
  * Where SK_WIDTH is 8 or 16 (src/device/lanes.h), operators on vectors work on each element, comparisons give masks, scalars on one side
  * included, `mask ? a : b` with a mask of all bits or none, and:
- *   sk_fN sk_iN sk_f4        SK_WIDTH floats, as many sk_i32, 4 floats
- *   sk_make_f(a, …) sk_make_i(a, …) sk_lane(v, k)                k is a constant
+ *   sk_fN sk_iN sk_f4 sk_i4  SK_WIDTH floats, as many sk_i32, 4 of each
+ *   sk_make_f(a, …) sk_make_i(a, …) sk_make_i4(a, …) sk_lane(v, k)   k is a constant
  *   sk_prefetch(p)                                               what p points to will be read or written soon
  *   sk_load_f4(p) sk_store_f4(v, p)                              global memory, aligned as one number is
  *   sk_store_i4(v, p)                                            4 sk_i32, as a shuffle gives them; the same
@@ -42,7 +42,7 @@
  *   sk_lane_bits(mask)                                           bit k: the mask is set in lane k
  *   sk_put_i(target, bits, i)                                    target[0], … in private memory are the lanes whose bit is set; up to SK_WIDTH
  *                                                                more may be written
- *   sk_put_u16(target, bits, i), sk_put_some(target, n, i)       with 16 lanes: target[0], … are the lanes whose bit is set, the first n
+ *   sk_put_i4(target, n, v)                                      target[0] to target[n - 1] in global memory are the first of 4; no more is written
  *   sk_shuffle(v, w, i, …)                                       elements of v and w, which are numbered on
  *
  * Not allowed: fma, mad, min, max, clamp, rsqrt, dot, cross, normalize, pow, exp, log, sin, float3, doubles without SK_DOUBLE, sub-groups,

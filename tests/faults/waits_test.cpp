@@ -101,7 +101,7 @@ TEST_P(Waits, OnceForOrdinaryScenes) {
 TEST_P(Waits, RoomIsSomeThirtyPercentAtMost) {
     if (support::has_small_sizes())
         GTEST_SKIP() << "SETKA_TEST_SIZE=small: sides are a large part of small scenes";
-    // Pairs in bins take 6 bytes, and room for 6 a triangle; spheres have 1.8, and hold least of all else. Where bins are not what a device
+    // Pairs in bins take 4 bytes, and room for 6 a triangle; spheres have 1.8, and hold least of all else. Where bins are not what a device
     // makes by itself, each has counters of its own.
     for (const auto& [tables, most] : {std::pair(CellTables::Scatter, 1.3), std::pair(CellTables::Bins, 1.5)}) {
         if (tables == CellTables::Bins && !setka::prefers_bins(device())) continue;

@@ -94,4 +94,72 @@ TEST(ReachLanes, AreTheSameAsAlone) {
     EXPECT_GT(not_numbers, 1000u);
 }
 
+/// The ends of [low, high], in which coordinate q of a triangle lies where coordinate p is between start and end.
+std::pair<double, double> interval_of(const float* triangle, std::size_t p, std::size_t q, double start, double end) {
+    double low = 1e30, high = -1e30;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double pa = triangle[3 * i + p], qa = triangle[3 * i + q], pb = triangle[(3 * i + 3) % 9 + p], qb = triangle[(3 * i + 3) % 9 + q];
+        for (const double t : {0.0, 1.0, (start - pa) / (pb - pa), (end - pa) / (pb - pa)}) {
+            const double at = pa + (pb - pa) * t;
+            if (!(t >= 0 && t <= 1) || at < start - 1e-9 || at > end + 1e-9) continue;
+            low = std::min(low, qa + (qb - qa) * t);
+            high = std::max(high, qa + (qb - qa) * t);
+        }
+    }
+    return {low, high};
+}
+
+/// Flat triangles, in 2 x 2 x 1 cells, whose lists one interval decides, unless it ends where roundings of the rule's other intervals might.
+TEST(ReachLanes, AreTheSameAsAloneWhereFlatOnesEndAtAPlane) {
+    sk_u32 partial = 0, certain = 0, uncertain = 0;
+    for (const auto& dims : {std::array{64u, 48u, 80u}, std::array{4096u, 4096u, 4096u}}) {
+        const SetkaGridHeader grid = grid_of(dims[0], dims[1], dims[2]);
+        const double tolerance = grid.tolerance;
+        support::Random random(dims[0] + 1);
+        std::vector<float> triangles;
+        while (triangles.size() < 9 * 200000) {
+            const std::size_t single = random.below(3), p = (single + 1 + random.below(2)) % 3, q = 3 - single - p;
+            std::array<float, 9> t;
+            std::array<double, 3> cell;
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                cell[axis] = random.below(dims[axis] - 1);
+                for (std::size_t v = 0; v < 3; ++v)
+                    t[3 * v + axis] = static_cast<float>(cell[axis]) + (axis == single ? random.between(0.1f, 0.9f) : random.between(0.1f, 1.9f));
+            }
+            // An end of the interval of q comes to the plane between its cells, or to where shares of the tolerance are left.
+            const bool second = random.below(2) != 0, at_low = random.below(2) != 0;
+            const double start = cell[p] + (second ? 1 : 0);
+            const auto [low, high] = interval_of(t.data(), p, q, start - tolerance, start + 1 + tolerance);
+            if (low > high) continue;
+            const double share = (static_cast<int>(random.below(13)) - 6) / 8.0 * tolerance;
+            const double move = cell[q] + 1 + share + (at_low ? tolerance - low : -tolerance - high);
+            for (std::size_t v = 0; v < 3; ++v) {
+                t[3 * v + q] = static_cast<float>(t[3 * v + q] + move);
+                for (std::uint32_t steps = random.below(3); steps > 0; --steps) t[3 * v + q] = std::nextafter(t[3 * v + q], random.below(2) ? 1e9f : -1e9f);
+            }
+            triangles.insert(triangles.end(), t.begin(), t.end());
+        }
+        const auto count = static_cast<sk_u32>(triangles.size() / 9);
+        std::vector<sk_reach> reaches(count);
+        (void)sk_find_reaches(0, count, grid, triangles.data(), reaches.data());
+        for (sk_u32 i = 0; i < count; ++i) {
+            const float* triangle = &triangles[9 * std::size_t{i}];
+            const sk_reach expected = alone(grid, triangle);
+            ASSERT_EQ(sk_reach_mask(reaches[i]), sk_reach_mask(expected)) << "triangle " << i << " of " << dims[0];
+            partial += sk_bit_count(sk_reach_mask(expected)) == 2 || sk_bit_count(sk_reach_mask(expected)) == 3;
+        }
+        for (sk_u32 i = 0; i + SK_WIDTH <= count; i += SK_WIDTH) {
+            const sk_points_lanes points = sk_load_cell_points_lanes(grid, &triangles[9 * std::size_t{i}]);
+            const sk_boxes_lanes boxes = sk_boxes_of(grid, points);
+            const sk_flat_lanes flat =
+                sk_flat_rule_of(grid, points, boxes.xy & 0xffff, boxes.xy >> 16 & 0xffff, boxes.z & 0xffff, boxes.z >> 16);
+            certain += sk_popcount(boxes.flats & sk_lane_bits(flat.is_certain));
+            uncertain += sk_popcount(boxes.flats & sk_lane_bits(~flat.is_certain));
+        }
+    }
+    EXPECT_GT(partial, 100000u);
+    EXPECT_GT(certain, 50000u);
+    EXPECT_GT(uncertain, 50000u);
+}
+
 }  // namespace

@@ -32,51 +32,58 @@ SK_FUNCTION sk_u64 sk_find_reaches(sk_u32 first, sk_u32 end, SetkaGridHeader gri
 
 #endif
 
+/**
+ * A pair in a bin: the cell's number there, above the triangle's in its span. A span is as many whole runs as have SK_SPAN triangles at most; from
+ * where the pairs of its last run end, which span a pair is of is known.
+ */
+SK_FUNCTION sk_u32 sk_pair_of(sk_u32 cell, sk_u32 triangle) { return cell * SK_SPAN + triangle; }
+SK_FUNCTION sk_u32 sk_cell_of_pair(sk_u32 pair) { return pair / SK_SPAN; }
+SK_FUNCTION sk_u32 sk_runs_in_span(sk_u32 length) { return SK_SPAN / length; }
+
 /** Where a run's pairs go. `next` has a number for each bin: of the run's pairs in it so far, or of the place of its next one. */
 typedef struct sk_run_of_triangles {
     SK_GLOBAL sk_u32* next;
-    SK_GLOBAL sk_u16* cells; /* of a pair, in its bin */
-    SK_GLOBAL sk_u32* triangles;
+    SK_GLOBAL sk_u32* pairs;
+    sk_u32 span; /* the first triangle of it */
     sk_dims bins;
 } sk_run_of_triangles;
 
-SK_FUNCTION sk_run_of_triangles sk_make_run(SK_GLOBAL sk_u32* next, SK_GLOBAL sk_u16* cells, SK_GLOBAL sk_u32* triangles,
-                                            SetkaGridHeader grid) {
+SK_FUNCTION sk_run_of_triangles sk_make_run(SK_GLOBAL sk_u32* next, SK_GLOBAL sk_u32* pairs, sk_u32 span, SetkaGridHeader grid) {
     sk_run_of_triangles r;
     r.next = next;
-    r.cells = cells;
-    r.triangles = triangles;
+    r.pairs = pairs;
+    r.span = span;
     r.bins = sk_bin_dims(sk_cell_dims(grid));
     return r;
 }
 
 /** Counts the pairs of a triangle whose cells are in one bin, as a mask from the bin's cell `first` on, or puts them where they belong. */
 SK_FUNCTION void sk_hand_over_bin(sk_run_of_triangles run, sk_u32 bin, sk_u32 first, sk_u64 mask, sk_u32 triangle, const int put) {
-    sk_u32 place = run.next[bin];
-    if (!put) {
-        place += sk_bit_count(mask);
-    } else {
-#if SK_WIDTH == 16u
-#define SK_STEP_OF(k) (sk_i32) sk_bin_step(k)
-        sk_iN cells = sk_same_i((sk_i32)first) + SK_INTS(SK_STEP_OF);
-#undef SK_STEP_OF
-        const sk_iN same = sk_same_i((sk_i32)triangle);
-        for (sk_u64 rest = mask; rest != 0u; rest >>= 16) {
-            const sk_u32 layer = (sk_u32)rest & 0xffffu, count = sk_popcount(layer);
-            sk_put_u16(run.cells + place, layer, cells);
-            sk_put_some(run.triangles + place, count, same);
-            place += count;
-            cells += (sk_i32)sk_bin_step(16u);
+    const sk_u32 count = sk_bit_count(mask), place = run.next[bin];
+    if (put) {
+        /* Cells of the mask add to this: what is too much for a bin's numbers falls off above. */
+        const sk_u32 corner = sk_pair_of(first, triangle - run.span);
+        SK_GLOBAL sk_u32* pairs = run.pairs + place;
+#if SK_WIDTH > 1
+        /* Four at once: most triangles have no more, and where a loop over single bits ends is guessed wrong. */
+        sk_u64 rest = mask;
+        for (sk_u32 done = 0u; done < count; done += 4u) {
+            const sk_u32 a = sk_lowest_bit(rest);
+            rest &= rest - 1u;
+            const sk_u32 b = sk_lowest_bit(rest);
+            rest &= rest - 1u;
+            const sk_u32 c = sk_lowest_bit(rest);
+            rest &= rest - 1u;
+            const sk_i4 bits = sk_make_i4((sk_i32)a, (sk_i32)b, (sk_i32)c, (sk_i32)sk_lowest_bit(rest));
+            rest &= rest - 1u;
+            sk_put_i4(pairs + done, sk_min_u32(count - done, 4u),
+                      ((bits & 3) + (bits << 2 & 0x30) + (bits << 4 & 0x300)) * (sk_i32)SK_SPAN + (sk_i32)corner);
         }
 #else
-        for (sk_u64 rest = mask; rest != 0u; rest &= rest - 1u) {
-            run.cells[place] = (sk_u16)(first + sk_bin_step(sk_lowest_bit(rest)));
-            run.triangles[place] = triangle;
-            place += 1u;
-        }
+        for (sk_u64 rest = mask; rest != 0u; rest &= rest - 1u) *pairs++ = corner + sk_pair_of(sk_bin_step(sk_lowest_bit(rest)), 0u);
 #endif
     }
-    run.next[bin] = place;
+    run.next[bin] = place + count;
 }
 
 /** Of a mask's 4 x 4 x 4 cells, those that lie less than `count` from its corner along an axis. */
@@ -119,10 +126,7 @@ SK_FUNCTION sk_u32 sk_hand_over_column(sk_run_of_triangles run, sk_cell_triangle
         const sk_u32 place = *next, first = sk_cell_in_bin(x, y, z);
         *next = place + cells;
         if (put)
-            for (sk_u32 c = 0u; c < cells; ++c) {
-                run.cells[place + c] = (sk_u16)(first + c * stride);
-                run.triangles[place + c] = triangle;
-            }
+            for (sk_u32 c = 0u; c < cells; ++c) run.pairs[place + c] = sk_pair_of(first + c * stride, triangle - run.span);
         k += cells;
     }
     return end - column.first;
@@ -216,7 +220,7 @@ SK_FUNCTION void sk_count_run(sk_u32 r, sk_u32 length, sk_u32 bins, SetkaGridHea
                               SK_GLOBAL sk_reach* reaches, SK_GLOBAL sk_u32* counts, sk_u32 most_units, SK_GLOBAL sk_u32* report) {
     SK_GLOBAL sk_u32* own = counts + (size_t)r * bins;
     const sk_u32 first = r * length, end = sk_min_u32(first + length, grid.triangle_count);
-    const sk_run_of_triangles run = sk_make_run(own, (SK_GLOBAL sk_u16*)0, (SK_GLOBAL sk_u32*)0, grid);
+    const sk_run_of_triangles run = sk_make_run(own, (SK_GLOBAL sk_u32*)0, 0u, grid);
     for (sk_u32 b = 0u; b < bins; ++b) own[b] = 0u;
     if (sk_block_count(run.bins) <= bins) {
         if (!sk_have_too_many(sk_find_reaches(first, end, grid, triangles, reaches), most_units, report))
@@ -226,10 +230,11 @@ SK_FUNCTION void sk_count_run(sk_u32 r, sk_u32 length, sk_u32 bins, SetkaGridHea
 
 /** The same run's pairs go where `next` says, which is changed. */
 SK_FUNCTION void sk_fill_run(sk_u32 r, sk_u32 length, sk_u32 bins, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
-                             SK_GLOBAL const sk_reach* reaches, SK_GLOBAL sk_u32* next, SK_GLOBAL sk_u16* cells,
-                             SK_GLOBAL sk_u32* numbers, SK_GLOBAL sk_u32* report) {
+                             SK_GLOBAL const sk_reach* reaches, SK_GLOBAL sk_u32* next, SK_GLOBAL sk_u32* pairs,
+                             SK_GLOBAL sk_u32* report) {
     const sk_u32 first = r * length, end = sk_min_u32(first + length, grid.triangle_count);
-    const sk_run_of_triangles run = sk_make_run(next + (size_t)r * bins, cells, numbers, grid);
+    const sk_run_of_triangles run =
+        sk_make_run(next + (size_t)r * bins, pairs, (r - r % sk_runs_in_span(length)) * length, grid);
     if (sk_block_count(run.bins) <= bins)
         for (sk_u32 i = first; i < end; ++i) sk_hand_over(run, i, grid, triangles, reaches, report, 1);
 }
@@ -280,11 +285,11 @@ SK_FUNCTION int sk_is_binned(SK_GLOBAL const sk_u32* report, sk_u32 capacity) {
 }
 
 /** Counts the pairs first to end - 1 of a bin in its cells. */
-SK_FUNCTION void sk_count_in_bin(sk_u32 first, sk_u32 end, SK_GLOBAL const sk_u16* cells, SK_GLOBAL sk_u32* counters) {
+SK_FUNCTION void sk_count_in_bin(sk_u32 first, sk_u32 end, SK_GLOBAL const sk_u32* pairs, SK_GLOBAL sk_u32* counters) {
     sk_four_counts none;
     none.a = none.b = none.c = none.d = 0u;
     for (sk_u32 c = 0u; c < SK_BIN_CELLS / 4u; ++c) ((SK_GLOBAL sk_four_counts*)counters)[c] = none;
-    for (sk_u32 p = first; p < end; ++p) counters[cells[p]] += 1u;
+    for (sk_u32 p = first; p < end; ++p) counters[sk_cell_of_pair(pairs[p])] += 1u;
 }
 
 /** The first block of a bin, and how many along each axis are inside the grid. */
@@ -362,17 +367,18 @@ SK_FUNCTION sk_counted_lanes sk_count_lanes(SK_GLOBAL const sk_u32* counters) {
     return r;
 }
 
-/** The records of a bin's blocks as sk_count_block() makes them; how long the longest list is. */
-SK_FUNCTION sk_u32 sk_count_bin(sk_u32 bin, sk_u32 first, sk_u32 end, SetkaGridHeader grid, SK_GLOBAL const sk_u16* cells,
-                                SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_block* counted, SK_GLOBAL sk_u32* marks) {
+/** The records of a bin's blocks as sk_count_block() makes them, and which of them are not empty; how long the longest list is. */
+SK_FUNCTION sk_u32 sk_count_bin(sk_u32 bin, sk_u32 first, sk_u32 end, SetkaGridHeader grid, SK_GLOBAL const sk_u32* pairs,
+                                SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_block* counted, SK_GLOBAL sk_u64* filled) {
     const sk_dims dims = sk_block_dims(sk_cell_dims(grid));
     const sk_bin_blocks own = sk_blocks_of_bin(dims, sk_bin_dims(sk_cell_dims(grid)), bin);
     sk_u32 lengths[SK_WIDTH], longest = 0u;
     sk_counted_lanes of_four;
     sk_iN longest_lists = sk_same_i(0);
+    sk_u64 own_filled = 0u;
     of_four.words = sk_same_i(0);
     of_four.filled = 0u;
-    if (first < end) sk_count_in_bin(first, end, cells, counters);
+    if (first < end) sk_count_in_bin(first, end, pairs, counters);
     for (sk_u32 z = 0u; z < own.count.z; ++z)
         for (sk_u32 y = 0u; y < own.count.y; ++y)
             for (sk_u32 x = 0u; x < own.count.x; x += SK_WIDTH / 4u) {
@@ -382,11 +388,8 @@ SK_FUNCTION sk_u32 sk_count_bin(sk_u32 bin, sk_u32 first, sk_u32 end, SetkaGridH
                     of_four = sk_count_lanes(counters + sk_cell_in_bin(4u * x, 4u * y, 4u * z));
                     longest_lists = sk_max_i(longest_lists, of_four.longest);
                 }
-                if (of_four.filled != 0u) {
-                    sk_u32 bits = 0u;
-                    for (sk_u32 k = 0u; k < blocks; ++k) bits |= (of_four.filled >> 4u * k & 1u) << k;
-                    sk_mark_blocks(dims, b % dims.x, b / dims.x, bits, marks);
-                }
+                for (sk_u32 k = 0u; k < blocks; ++k)
+                    own_filled |= (sk_u64)(of_four.filled >> 4u * k & 1u) << sk_bit_in_block(x + k, y, z);
                 if (blocks == SK_WIDTH / 4u) {
                     sk_store_i(of_four.words, (SK_GLOBAL sk_i32*)(counted + b));
                 } else {
@@ -395,6 +398,7 @@ SK_FUNCTION sk_u32 sk_count_bin(sk_u32 bin, sk_u32 first, sk_u32 end, SetkaGridH
                     for (sk_u32 k = 0u; k < 4u * blocks; ++k) ((SK_GLOBAL sk_u32*)(counted + b))[k] = words[k];
                 }
             }
+    filled[bin] = own_filled;
     sk_store_lanes(longest_lists, lengths);
     for (sk_u32 k = 0u; k < SK_WIDTH; ++k) longest = sk_max_u32(longest, lengths[k]);
     return longest;
@@ -410,23 +414,25 @@ SK_FUNCTION sk_tally sk_tally_in_bin(SK_GLOBAL const sk_u32* counters) {
     return r;
 }
 
-/** The records of a bin's blocks as sk_count_block() makes them; how long the longest list is. */
-SK_FUNCTION sk_u32 sk_count_bin(sk_u32 bin, sk_u32 first, sk_u32 end, SetkaGridHeader grid, SK_GLOBAL const sk_u16* cells,
-                                SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_block* counted, SK_GLOBAL sk_u32* marks) {
+/** The records of a bin's blocks as sk_count_block() makes them, and which of them are not empty; how long the longest list is. */
+SK_FUNCTION sk_u32 sk_count_bin(sk_u32 bin, sk_u32 first, sk_u32 end, SetkaGridHeader grid, SK_GLOBAL const sk_u32* pairs,
+                                SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_block* counted, SK_GLOBAL sk_u64* filled) {
     const sk_dims dims = sk_block_dims(sk_cell_dims(grid));
     const sk_bin_blocks own = sk_blocks_of_bin(dims, sk_bin_dims(sk_cell_dims(grid)), bin);
+    sk_u64 own_filled = 0u;
     sk_u32 longest = 0u;
-    if (first < end) sk_count_in_bin(first, end, cells, counters);
+    if (first < end) sk_count_in_bin(first, end, pairs, counters);
     for (sk_u32 z = 0u; z < own.count.z; ++z)
         for (sk_u32 y = 0u; y < own.count.y; ++y)
             for (sk_u32 x = 0u; x < own.count.x; ++x) {
                 const sk_u32 b = sk_number_at(dims, own.first.x + x, own.first.y + y, own.first.z + z);
                 sk_tally tally = sk_no_tally();
                 if (first < end) tally = sk_tally_in_bin(counters + sk_cell_in_bin(4u * x, 4u * y, 4u * z));
-                if (tally.mask != 0u) sk_mark_block(dims, b, marks);
+                if (tally.mask != 0u) own_filled |= (sk_u64)1 << sk_bit_in_block(x, y, z);
                 longest = sk_max_u32(longest, tally.longest);
                 counted[b] = sk_counted_block(tally);
             }
+    filled[bin] = own_filled;
     return longest;
 }
 
@@ -437,53 +443,88 @@ SK_FUNCTION sk_u32 sk_count_bin(sk_u32 bin, sk_u32 first, sk_u32 end, SetkaGridH
  * if not all pairs are in bins or the grid has more blocks.
  */
 SK_FUNCTION void sk_tally_bins(sk_u32 first, sk_u32 n, sk_u32 step, sk_u32 capacity, sk_u32 blocks, SetkaGridHeader grid,
-                               SK_GLOBAL const sk_u32* starts, SK_GLOBAL const sk_u16* cells, SK_GLOBAL sk_u32* counters,
-                               SK_GLOBAL sk_block* counted, SK_GLOBAL sk_u32* marks, SK_GLOBAL sk_u32* report) {
+                               SK_GLOBAL const sk_u32* starts, SK_GLOBAL const sk_u32* pairs, SK_GLOBAL sk_u32* counters,
+                               SK_GLOBAL sk_block* counted, SK_GLOBAL sk_u64* filled, SK_GLOBAL sk_u32* report) {
     const sk_u32 blocks_of_grid = sk_block_count(sk_block_dims(sk_cell_dims(grid)));
     const sk_u32 bins_of_grid = sk_block_count(sk_bin_dims(sk_cell_dims(grid)));
     const int has_all = sk_is_binned(report, capacity) && blocks_of_grid <= blocks;
     const sk_u32 bins = has_all ? sk_min_u32(bins_of_grid, n) : 0u, of_grid = has_all ? blocks_of_grid : 0u;
     sk_u32 longest = 0u;
     for (sk_u32 b = first; b < bins; b += step)
-        longest = sk_max_u32(longest, sk_count_bin(b, starts[b], starts[b + 1u], grid, cells, counters, counted, marks));
+        longest = sk_max_u32(longest, sk_count_bin(b, starts[b], starts[b + 1u], grid, pairs, counters, counted, filled));
     for (sk_u32 b = of_grid + first; b < blocks; b += step) counted[b] = sk_counted_block(sk_no_tally());
     if (longest > SK_LONG_LIST) (void)sk_atomic_max(report + SK_TOTAL_LONGEST, longest);
 }
 
-/** Marks that a bin's row of blocks shares: its own, and those of all rows up to 1, 2 and 3 away. */
+/** Blocks of a bin, by sk_bit_in_block(), that have a block that is not empty up to 1, 2 and 3 blocks away. */
 typedef struct sk_rings {
-    sk_u32 near1, near2, near3;
+    sk_u64 near1, near2, near3;
 } sk_rings;
 
-SK_FUNCTION sk_rings sk_rings_around(sk_dims blocks, sk_u32 x, sk_u32 y, sk_u32 z, SK_GLOBAL const sk_u32* marks) {
-    SK_GLOBAL const sk_u32* column = marks + x / SK_MARKED_BLOCKS;
+/** Of 4 x 4 x 4, those that lie less than `count` from the corner along the axis of that stride: 1, 4 or 16. */
+SK_FUNCTION sk_u64 sk_near(sk_u32 stride, sk_u32 count) {
+    return stride == 1u ? sk_near_x(count) : stride == 4u ? sk_near_y(count) : sk_near_z(count);
+}
+
+/** What is up to `around` away from `own` along an axis, on which another bin lies before it and another behind it. */
+SK_FUNCTION sk_u64 sk_widen_blocks(sk_u64 before, sk_u64 own, sk_u64 after, const sk_u32 stride, const sk_u32 around) {
+    sk_u64 some = own;
+    for (sk_u32 d = 1u; d <= around; ++d) {
+        const sk_u64 near = sk_near(stride, d), far = ~sk_near(stride, 4u - d);
+        some |= (own << stride * d & ~near) | (before >> stride * (4u - d) & near);
+        some |= (own >> stride * d & ~far) | (after << stride * (4u - d) & far);
+    }
+    return some;
+}
+SK_FUNCTION sk_rings sk_widen_rings(sk_rings before, sk_rings own, sk_rings after, const sk_u32 stride) {
     sk_rings r;
-    r.near1 = column[(size_t)(z * blocks.y + y) * sk_words_in_row(blocks)] | sk_marks_around(blocks, y, z, 1u, column);
-    r.near2 = r.near1 | sk_marks_around(blocks, y, z, 2u, column);
-    r.near3 = r.near2 | sk_marks_around(blocks, y, z, 3u, column);
+    r.near1 = sk_widen_blocks(before.near1, own.near1, after.near1, stride, 1u);
+    r.near2 = sk_widen_blocks(before.near2, own.near2, after.near2, stride, 2u);
+    r.near3 = sk_widen_blocks(before.near3, own.near3, after.near3, stride, 3u);
     return r;
 }
 
-/** sk_find_clearance() of block x of the row. */
-SK_FUNCTION sk_u32 sk_clearance_in(sk_rings rings, sk_u32 x) {
-    const sk_u32 free1 = 1u - sk_is_marked_near(rings.near1, x, 1u);
-    const sk_u32 free2 = free1 & (1u - sk_is_marked_near(rings.near2, x, 2u));
-    return 4u * (1u + free1 + free2 + (free2 & (1u - sk_is_marked_near(rings.near3, x, 3u)))) - 1u;
+/** What is filled of a bin, which may lie outside. */
+SK_FUNCTION sk_rings sk_filled_at(sk_dims bins, sk_u32 x, sk_u32 y, sk_u32 z, SK_GLOBAL const sk_u64* filled) {
+    sk_rings r;
+    r.near1 = x < bins.x && y < bins.y && z < bins.z ? filled[sk_number_at(bins, x, y, z)] : 0u;
+    r.near2 = r.near3 = r.near1;
+    return r;
 }
 
-/** The lists of a bin: records of blocks and cells, and references. */
-SK_FUNCTION void sk_place_bin(sk_u32 bin, sk_u32 first, sk_u32 end, SetkaGridHeader grid, SK_GLOBAL const sk_u16* cells,
-                              SK_GLOBAL const sk_u32* triangles, SK_GLOBAL sk_u32* counters,
-                              SK_GLOBAL const sk_block* counted, SK_GLOBAL const sk_u32* marks, SK_GLOBAL sk_block* blocks,
+/** A bin is as many blocks wide as is looked around an empty one, and one more: its neighbours are all that counts. */
+SK_FUNCTION sk_rings sk_rings_of(sk_dims bins, sk_u32 bin, SK_GLOBAL const sk_u64* filled) {
+    const sk_u32 x = bin % bins.x, y = bin / bins.x % bins.y, z = bin / bins.x / bins.y;
+    sk_rings layers[3];
+    for (sk_u32 k = 0u; k < 3u; ++k) {
+        sk_rings rows[3];
+        for (sk_u32 j = 0u; j < 3u; ++j)
+            rows[j] = sk_widen_rings(sk_filled_at(bins, x - 1u, y + j - 1u, z + k - 1u, filled),
+                                     sk_filled_at(bins, x, y + j - 1u, z + k - 1u, filled),
+                                     sk_filled_at(bins, x + 1u, y + j - 1u, z + k - 1u, filled), 1u);
+        layers[k] = sk_widen_rings(rows[0], rows[1], rows[2], 4u);
+    }
+    return sk_widen_rings(layers[0], layers[1], layers[2], 16u);
+}
+
+/** The clearance of an empty block, as sk_find_clearance() says. */
+SK_FUNCTION sk_u32 sk_clearance_in(sk_rings rings, sk_u32 bit) {
+    return 15u - 4u * (sk_u32)((rings.near1 >> bit & 1u) + (rings.near2 >> bit & 1u) + (rings.near3 >> bit & 1u));
+}
+
+/** The lists of a bin: records of blocks and cells, and references. ends[r * bins + bin] is where the pairs of run r end. */
+SK_FUNCTION void sk_place_bin(sk_u32 bin, sk_u32 first, sk_u32 end, sk_u32 length, sk_u32 runs, sk_u32 bins, SK_GLOBAL const sk_u32* ends,
+                              SetkaGridHeader grid, SK_GLOBAL const sk_u32* pairs, SK_GLOBAL sk_u32* counters,
+                              SK_GLOBAL const sk_block* counted, SK_GLOBAL const sk_u64* filled, SK_GLOBAL sk_block* blocks,
                               SK_GLOBAL sk_cell_list* lists, SK_GLOBAL sk_u32* references) {
-    const sk_dims dims = sk_block_dims(sk_cell_dims(grid));
-    const sk_bin_blocks own = sk_blocks_of_bin(dims, sk_bin_dims(sk_cell_dims(grid)), bin);
+    const sk_dims dims = sk_block_dims(sk_cell_dims(grid)), bin_dims = sk_bin_dims(sk_cell_dims(grid));
+    const sk_bin_blocks own = sk_blocks_of_bin(dims, bin_dims, bin);
+    const sk_rings rings = sk_rings_of(bin_dims, bin, filled);
     sk_await_blocks(dims, own, counted);
     sk_await_blocks(dims, own, blocks);
-    if (first < end) sk_count_in_bin(first, end, cells, counters);
+    if (first < end) sk_count_in_bin(first, end, pairs, counters);
     for (sk_u32 z = 0u; z < own.count.z; ++z)
-        for (sk_u32 y = 0u; y < own.count.y; ++y) {
-            const sk_rings rings = sk_rings_around(dims, own.first.x, own.first.y + y, own.first.z + z, marks);
+        for (sk_u32 y = 0u; y < own.count.y; ++y)
             for (sk_u32 x = 0u; x < own.count.x; ++x) {
                 const sk_u32 b = sk_number_at(dims, own.first.x + x, own.first.y + y, own.first.z + z);
                 const sk_u32 corner = sk_cell_in_bin(4u * x, 4u * y, 4u * z);
@@ -503,15 +544,19 @@ SK_FUNCTION void sk_place_bin(sk_u32 bin, sk_u32 first, sk_u32 end, SetkaGridHea
 #if SK_WIDTH > 1
                 for (sk_u32 place = block.clearance; place < list.offset; place += 16u) sk_prefetch(references + place);
 #endif
-                block.clearance = sk_mask_of(block) != 0u ? 0u : sk_clearance_in(rings, own.first.x + x);
+                block.clearance = sk_mask_of(block) != 0u ? 0u : sk_clearance_in(rings, sk_bit_in_block(x, y, z));
                 blocks[b] = block;
             }
+    const sk_u32 in_span = sk_runs_in_span(length);
+    sk_u32 p = first;
+    for (sk_u32 r = 0u; p < end; r += in_span) {
+        const sk_u32 next = r + in_span, span = r * length, span_end = next < runs ? ends[(size_t)(next - 1u) * bins + bin] : end;
+        for (; p < span_end; ++p) {
+            SK_GLOBAL sk_u32* counter = counters + sk_cell_of_pair(pairs[p]);
+            const sk_u32 place = *counter;
+            *counter = place + 1u;
+            references[place] = span + pairs[p] % SK_SPAN;
         }
-    for (sk_u32 p = first; p < end; ++p) {
-        SK_GLOBAL sk_u32* counter = counters + cells[p];
-        const sk_u32 place = *counter;
-        *counter = place + 1u;
-        references[place] = triangles[p];
     }
 }
 

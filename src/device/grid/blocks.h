@@ -141,16 +141,14 @@ SK_FUNCTION sk_block sk_counted_block(sk_tally tally) {
 #define SK_MARKED_BLOCKS 16u
 SK_FUNCTION sk_u32 sk_words_in_row(sk_dims blocks) { return (blocks.x + SK_MARKED_BLOCKS - 1u) / SK_MARKED_BLOCKS; }
 
-/** Sets the marks of blocks that are not empty, a bit each from block x of a row on; x and the last one have the same x / 8. They are 0 at first. */
-SK_FUNCTION void sk_mark_blocks(sk_dims blocks, sk_u32 x, sk_u32 row, sk_u32 bits, SK_GLOBAL sk_u32* marks) {
+/** Sets the marks of block b, which is not empty. They are 0 at first. */
+SK_FUNCTION void sk_mark_block(sk_dims blocks, sk_u32 b, SK_GLOBAL sk_u32* marks) {
+    const sk_u32 x = b % blocks.x, row = b / blocks.x;
     const sk_u32 words = sk_words_in_row(blocks), i = x / SK_MARKED_BLOCKS, k = x % SK_MARKED_BLOCKS;
     SK_GLOBAL sk_u32* word = marks + ((size_t)row * words + i);
-    (void)sk_atomic_or(word, bits << (k + 8u));
-    if (k < 8u && i > 0u) (void)sk_atomic_or(word - 1, bits << (k + 24u));
-    if (k >= 8u && i + 1u < words) (void)sk_atomic_or(word + 1, bits << (k - 8u));
-}
-SK_FUNCTION void sk_mark_block(sk_dims blocks, sk_u32 b, SK_GLOBAL sk_u32* marks) {
-    sk_mark_blocks(blocks, b % blocks.x, b / blocks.x, 1u, marks);
+    (void)sk_atomic_or(word, 1u << (k + 8u));
+    if (k < 8u && i > 0u) (void)sk_atomic_or(word - 1, 1u << (k + 24u));
+    if (k >= 8u && i + 1u < words) (void)sk_atomic_or(word + 1, 1u << (k - 8u));
 }
 
 /** How many blocks around an empty one are looked at, in each direction. */

@@ -30,6 +30,8 @@
 #define SK_BIN_SIDE 16u
 #define SK_BIN_CELLS 4096u
 #define SK_BIN_PART 64u
+/** Triangles that a pair in a bin can tell apart, in the bits that a cell's number in its bin leaves. */
+#define SK_SPAN 1048576u
 
 /**
  * What a build's kernels tell each other and the host, in one table of SK_REPORT words that are 0 at first: totals, what the transform found, and

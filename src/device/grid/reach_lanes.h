@@ -65,8 +65,8 @@ SK_FUNCTION void sk_store_lanes(sk_iN v, sk_u32* target) { sk_store_i(v, (sk_i32
 /** sk_reach_by_box() of each lane as sk_reach_in_bin() has it, what lanes have to wait for the rule, and corners for that. */
 typedef struct sk_boxes_lanes {
     sk_iN words[4]; /* of sk_reach */
-    sk_iN xy, z, most;
-    sk_u32 twos, threes, fours, large; /* bits of lanes: what waits is no more than so many cells wide */
+    sk_iN xy, z, most; /* z + 2^16 times the axis along which a flat one has one cell */
+    sk_u32 flats, twos, threes, fours, large; /* bits of lanes: what waits is no more than so many cells wide, flat ones two */
 } sk_boxes_lanes;
 
 /** The lowest `count` bits, 1 to 4, of a mask's word. */
@@ -82,7 +82,8 @@ SK_FUNCTION sk_boxes_lanes sk_boxes_of(SetkaGridHeader grid, sk_points_lanes poi
     const sk_extent_lanes z = sk_extent_along(points.p0.z, points.p1.z, points.p2.z, around, grid.dims[2]);
     const sk_iN most = sk_max_i(sk_max_i(x.count, y.count), z.count);
     const sk_iN single = (x.count == 1) + (y.count == 1) + (z.count == 1); /* each true one is -1 */
-    const sk_iN is_run = (single <= -2) & (most <= 4) & x.is_clear & y.is_clear & z.is_clear;
+    const sk_iN is_clear = x.is_clear & y.is_clear & z.is_clear;
+    const sk_iN is_run = (single <= -2) & (most <= 4) & is_clear, is_flat = (single == -1) & (most == 2) & is_clear;
     const sk_iN is_large = most > (sk_i32)SK_SMALL_BOX, is_rows = (most > 4) & ~is_large;
     const sk_iN low = sk_run_lanes(x.count, 1u) | sk_run_lanes(y.count, 4u) | ((z.count >= 2) & 0x10000);
     const sk_iN high = ((z.count >= 3) & 1) | ((z.count >= 4) & 0x10000);
@@ -100,9 +101,10 @@ SK_FUNCTION sk_boxes_lanes sk_boxes_of(SetkaGridHeader grid, sk_points_lanes poi
     r.words[2] = sk_select_i(is_in_bin, bin, xy);
     r.words[3] = sk_select_i(is_in_bin, in_x | in_y << 4 | in_z << 8, z.first) | kind << 16;
     r.xy = xy;
-    r.z = z.first;
+    r.z = z.first | ((y.count == 1) & 1 << 16) | ((z.count == 1) & 2 << 16);
     r.most = most;
-    r.twos = sk_lane_bits(~is_run & (most <= 2));
+    r.flats = sk_lane_bits(is_flat);
+    r.twos = sk_lane_bits(~is_run & ~is_flat & (most <= 2));
     r.threes = sk_lane_bits(~is_run & (most == 3));
     r.fours = sk_lane_bits(~is_run & (most == 4));
     r.large = sk_lane_bits(is_large);
@@ -217,16 +219,35 @@ SK_FUNCTION sk_fN sk_largest_lanes(sk_vec3N a) {
     return sk_max_f(sk_max_f(sk_abs_f(a.x), sk_abs_f(a.y)), sk_abs_f(a.z));
 }
 
-/** The rule for triangles whose boxes are no more than `cells` wide, 2 to 4, from the corners on. */
-SK_FUNCTION sk_masks_lanes sk_rule_of(SetkaGridHeader grid, sk_points_lanes points, sk_iN corner_x, sk_iN corner_y,
-                                     sk_iN corner_z, const int cells) {
-    const float tolerance = grid.tolerance;
+/** The normal, and which of its components is the largest, z before y before x where equal. */
+typedef struct sk_axes_lanes {
+    sk_vec3N e1, e2, n;
+    sk_iN along_y, along_z;
+} sk_axes_lanes;
+
+SK_FUNCTION sk_axes_lanes sk_axes_of(sk_points_lanes points) {
     const sk_vec3N p0 = points.p0, p1 = points.p1, p2 = points.p2;
     const sk_vec3N e1 = sk_make3_f(p1.x - p0.x, p1.y - p0.y, p1.z - p0.z);
     const sk_vec3N e2 = sk_make3_f(p2.x - p0.x, p2.y - p0.y, p2.z - p0.z);
     const sk_vec3N n = sk_make3_f(e1.y * e2.z - e1.z * e2.y, e1.z * e2.x - e1.x * e2.z, e1.x * e2.y - e1.y * e2.x);
     const sk_fN nx = sk_abs_f(n.x), ny = sk_abs_f(n.y), nz = sk_abs_f(n.z);
-    const sk_iN along_z = (nz >= nx) & (nz >= ny), along_y = ~along_z & (ny >= nx), along_x = ~along_z & ~along_y;
+    sk_axes_lanes r;
+    r.e1 = e1;
+    r.e2 = e2;
+    r.n = n;
+    r.along_z = (nz >= nx) & (nz >= ny);
+    r.along_y = ~r.along_z & (ny >= nx);
+    return r;
+}
+
+/** The rule for triangles whose boxes are no more than `cells` wide, 2 to 4, from the corners on. */
+SK_FUNCTION sk_masks_lanes sk_rule_of(SetkaGridHeader grid, sk_points_lanes points, sk_iN corner_x, sk_iN corner_y,
+                                     sk_iN corner_z, const int cells) {
+    const float tolerance = grid.tolerance;
+    const sk_vec3N p0 = points.p0, p1 = points.p1, p2 = points.p2;
+    const sk_axes_lanes axes = sk_axes_of(points);
+    const sk_vec3N e1 = axes.e1, e2 = axes.e2, n = axes.n;
+    const sk_iN along_y = axes.along_y, along_z = axes.along_z, along_x = ~along_z & ~along_y;
     const sk_vec3N x = sk_make3_f(p0.x, p1.x, p2.x), y = sk_make3_f(p0.y, p1.y, p2.y), z = sk_make3_f(p0.z, p1.z, p2.z);
     const sk_vec3N u = sk_choose3(along_x, y, x), v = sk_choose3(along_z, y, z);
     const sk_vec3N w = sk_choose3(along_z, z, sk_choose3(along_y, y, x));
@@ -285,13 +306,53 @@ SK_FUNCTION sk_masks_lanes sk_rule_of(SetkaGridHeader grid, sk_points_lanes poin
     return sk_turn_masks(r, along_y, along_z);
 }
 
+/** Masks of the cells at the corner, in one word, where rounding does not decide. */
+typedef struct sk_flat_lanes {
+    sk_iN mask, is_certain;
+} sk_flat_lanes;
+
+/**
+ * The rule for triangles whose boxes have one cell along `axis`, 0 to 2, and two along the others, with clear ends: along the other axes the projection is
+ * cut by the slabs of one, and the interval of the other decides alone. Not where an end of it is so near a plane that the roundings of what else
+ * the rule asks may count ("Without the rule", src/README.md).
+ */
+SK_FUNCTION sk_flat_lanes sk_flat_rule_of(SetkaGridHeader grid, sk_points_lanes points, sk_iN corner_x, sk_iN corner_y, sk_iN corner_z,
+                                          sk_iN axis) {
+    const float tolerance = grid.tolerance, margin = 0.5f * grid.tolerance;
+    const sk_points_lanes p = points;
+    const sk_iN single_x = axis == 0, single_z = axis == 2;
+    const sk_axes_lanes axes = sk_axes_of(points);
+    const sk_iN b_leads = sk_select_i(single_z, axes.along_y, axes.along_z); /* of a and b, the axes with two cells each */
+    const sk_vec3N x = sk_make3_f(p.p0.x, p.p1.x, p.p2.x), y = sk_make3_f(p.p0.y, p.p1.y, p.p2.y), z = sk_make3_f(p.p0.z, p.p1.z, p.p2.z);
+    const sk_vec3N a = sk_choose3(single_x, y, x), b = sk_choose3(single_z, y, z);
+    const sk_iN corner_a = sk_select_i(single_x, corner_y, corner_x), corner_b = sk_select_i(single_z, corner_y, corner_z);
+    const sk_iN step_a = sk_select_i(single_x, sk_same_i(4), sk_same_i(1)), step_b = sk_select_i(single_z, sk_same_i(4), sk_same_i(16));
+    const sk_iN step_across = sk_select_i(b_leads, step_b, step_a), step_slab = sk_select_i(b_leads, step_a, step_b);
+    const sk_edges_lanes edges = sk_order_edges(sk_choose3(b_leads, a, b), sk_choose3(b_leads, b, a));
+    const sk_fN slab = sk_lanes_to_float(sk_select_i(b_leads, corner_a, corner_b));
+    const sk_fN plane = sk_lanes_to_float(sk_select_i(b_leads, corner_b, corner_a) + 1);
+    sk_flat_lanes r;
+    r.mask = sk_same_i(0);
+    r.is_certain = sk_same_i(-1);
+    for (int k = 0; k < 2; ++k) {
+        const sk_fN at = slab + (float)k;
+        const sk_interval_lanes interval = sk_clip_lanes(edges, at - tolerance, (at + 1.0f) + tolerance);
+        const sk_fN low = interval.low - tolerance, high = interval.high + tolerance;
+        const sk_iN own = ((low < plane) & 1) | ((high >= plane) & (sk_same_i(1) << step_across));
+        r.mask |= k == 0 ? own : own << step_slab;
+        r.is_certain &= (sk_abs_f(low - plane) > margin) & (sk_abs_f(high - plane) > margin) & (interval.low <= interval.high);
+    }
+    return r;
+}
+
 /** The triangles that are looked at before those that wait have their turn. */
 #define SK_CHUNK 128u
 
-/** Triangles that wait for the rule, with the corners of their boxes: fewer than lanes from the last turn, those of a chunk, and room to write more lanes than count. */
+/** Triangles that wait for the rule, with the corners of their boxes: fewer than lanes from the last turn, those of a chunk, of flat ones that are not certain fewer than lanes more,
+ * and room to write more lanes than count. */
 typedef struct sk_waiting {
     sk_u32 count;
-    sk_i32 triangles[SK_CHUNK + 2u * SK_WIDTH], xy[SK_CHUNK + 2u * SK_WIDTH], z[SK_CHUNK + 2u * SK_WIDTH];
+    sk_i32 triangles[SK_CHUNK + 3u * SK_WIDTH], xy[SK_CHUNK + 3u * SK_WIDTH], z[SK_CHUNK + 3u * SK_WIDTH];
 } sk_waiting;
 
 /** Lets those triangles wait whose bits are set. */
@@ -304,21 +365,37 @@ SK_FUNCTION void sk_let_wait(sk_waiting* waiting, sk_u32 bits, sk_iN triangles, 
     }
 }
 
-/** Finds the masks of those that wait, by the rule, while they fill all lanes; and with `end` of the rest too. */
-SK_FUNCTION void sk_reach_waiting(sk_waiting* waiting, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
-                                  SK_GLOBAL sk_reach* reaches, const int cells, const int end) {
+/** The end of those that have their turn: as many as fill all lanes, and with `end` the rest too, whose lanes without a triangle of their own do the first one's again. */
+SK_FUNCTION sk_u32 sk_end_of_turn(sk_waiting* waiting, const int end) {
     const sk_u32 all = waiting->count;
-    sk_u32 first = 0u;
-    if (end && all % SK_WIDTH != 0u) /* lanes without a triangle of their own do the first one's again */
+    if (!end) return all - all % SK_WIDTH;
+    if (all % SK_WIDTH != 0u)
         for (sk_u32 k = all; k < all + SK_WIDTH; ++k) {
             waiting->triangles[k] = waiting->triangles[0];
             waiting->xy[k] = waiting->xy[0];
             waiting->z[k] = waiting->z[0];
         }
-    for (; first + SK_WIDTH <= all || (end && first < all); first += SK_WIDTH) {
+    return all;
+}
+
+/** The rest waits for the next turn. */
+SK_FUNCTION void sk_end_turn(sk_waiting* waiting, sk_u32 end) {
+    if (end < waiting->count && end != 0u) {
+        sk_store_i(sk_load_i(waiting->triangles + end), waiting->triangles);
+        sk_store_i(sk_load_i(waiting->xy + end), waiting->xy);
+        sk_store_i(sk_load_i(waiting->z + end), waiting->z);
+    }
+    waiting->count -= end;
+}
+
+/** Finds the masks of those that wait, by the rule, while they fill all lanes; and with `end` of the rest too. */
+SK_FUNCTION void sk_reach_waiting(sk_waiting* waiting, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
+                                  SK_GLOBAL sk_reach* reaches, const int cells, const int end) {
+    const sk_u32 turn = sk_end_of_turn(waiting, end);
+    for (sk_u32 first = 0u; first < turn; first += SK_WIDTH) {
         const sk_iN numbers = sk_load_i(waiting->triangles + first), xy = sk_load_i(waiting->xy + first);
-        const sk_masks_lanes masks = sk_rule_of(grid, sk_gather_cell_points(grid, triangles, numbers), xy & 0xffff,
-                                                xy >> 16 & 0xffff, sk_load_i(waiting->z + first), cells);
+        const sk_masks_lanes masks = sk_rule_of(grid, sk_gather_cell_points(grid, triangles, numbers), xy & 0xffff, xy >> 16 & 0xffff,
+                                                sk_load_i(waiting->z + first) & 0xffff, cells);
         sk_u32 low[SK_WIDTH], high[SK_WIDTH];
         sk_store_lanes(masks.low, low);
         sk_store_lanes(masks.high, high);
@@ -328,12 +405,24 @@ SK_FUNCTION void sk_reach_waiting(sk_waiting* waiting, SetkaGridHeader grid, SK_
             reach->mask_high = high[k];
         }
     }
-    if (first < all && first != 0u) {
-        sk_store_i(sk_load_i(waiting->triangles + first), waiting->triangles);
-        sk_store_i(sk_load_i(waiting->xy + first), waiting->xy);
-        sk_store_i(sk_load_i(waiting->z + first), waiting->z);
+    sk_end_turn(waiting, turn);
+}
+
+/** The same for flat ones; those that are not certain wait with the `others`. */
+SK_FUNCTION void sk_reach_flats(sk_waiting* waiting, SetkaGridHeader grid, SK_GLOBAL const float* triangles, SK_GLOBAL sk_reach* reaches,
+                                sk_waiting* others, const int end) {
+    const sk_u32 turn = sk_end_of_turn(waiting, end);
+    for (sk_u32 first = 0u; first < turn; first += SK_WIDTH) {
+        const sk_u32 count = sk_min_u32(turn - first, SK_WIDTH);
+        const sk_iN numbers = sk_load_i(waiting->triangles + first), xy = sk_load_i(waiting->xy + first), z = sk_load_i(waiting->z + first);
+        const sk_flat_lanes flat = sk_flat_rule_of(grid, sk_gather_cell_points(grid, triangles, numbers), xy & 0xffff, xy >> 16 & 0xffff,
+                                                   z & 0xffff, z >> 16);
+        sk_u32 low[SK_WIDTH];
+        sk_store_lanes(flat.mask, low);
+        for (sk_u32 k = 0u; k < SK_WIDTH; ++k) reaches[(sk_u32)waiting->triangles[first + k]].mask_low = low[k];
+        sk_let_wait(others, sk_lane_bits(~flat.is_certain) & ((2u << (count - 1u)) - 1u), numbers, xy, z);
     }
-    waiting->count = first < all ? all - first : 0u;
+    sk_end_turn(waiting, turn);
 }
 
 /** Stores the records of SK_WIDTH triangles, or of the first `count`. */
@@ -365,8 +454,9 @@ SK_FUNCTION sk_u32 sk_units_of(sk_iN most, sk_u32 lanes) {
 /** The reaches of triangles first to end - 1, and in how many cells large ones are at least, in units of SK_LONG_ROW. */
 SK_FUNCTION sk_u64 sk_find_reaches(sk_u32 first, sk_u32 end, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
                                    SK_GLOBAL sk_reach* reaches) {
-    sk_waiting twos, threes, fours;
+    sk_waiting flats, twos, threes, fours;
     sk_u64 units = 0u;
+    flats.count = 0u;
     twos.count = 0u;
     threes.count = 0u;
     fours.count = 0u;
@@ -384,10 +474,12 @@ SK_FUNCTION sk_u64 sk_find_reaches(sk_u32 first, sk_u32 end, SetkaGridHeader gri
         for (sk_u32 k = 0u; k < SK_WIDTH; k += 4u) sk_prefetch(reaches + (start + 2u * SK_WIDTH + k));
         sk_store_reaches(boxes.words, count, reaches + start);
         if ((boxes.large & lanes) != 0u) units += sk_units_of(boxes.most, boxes.large & lanes);
+        sk_let_wait(&flats, boxes.flats & lanes, numbers, boxes.xy, boxes.z);
         sk_let_wait(&twos, boxes.twos & lanes, numbers, boxes.xy, boxes.z);
         sk_let_wait(&threes, boxes.threes & lanes, numbers, boxes.xy, boxes.z);
         sk_let_wait(&fours, boxes.fours & lanes, numbers, boxes.xy, boxes.z);
         if (is_last || (start + SK_WIDTH - first) % SK_CHUNK == 0u) {
+            sk_reach_flats(&flats, grid, triangles, reaches, &twos, is_last);
             sk_reach_waiting(&twos, grid, triangles, reaches, 2, is_last);
             sk_reach_waiting(&threes, grid, triangles, reaches, 3, is_last);
             sk_reach_waiting(&fours, grid, triangles, reaches, 4, is_last);
