@@ -69,8 +69,8 @@ typedef ulong sk_u64;
 
 #if SK_WIDTH > 1
 typedef float4 sk_f4;
-typedef int4 sk_i4;
-#define sk_make_i4(a, b, c, d) ((int4)((a), (b), (c), (d)))
+typedef uint4 sk_u4;
+#define sk_make_u4(a, b, c, d) ((uint4)((a), (b), (c), (d)))
 #if SK_WIDTH == 16u
 typedef float16 sk_fN;
 typedef int16 sk_iN;
@@ -100,6 +100,7 @@ typedef int8 sk_iN;
 #define sk_load_f4(p) vload4(0, p)
 #define sk_store_f4(v, p) vstore4(v, 0, p)
 #define sk_store_i4(v, p) vstore4(v, 0, p)
+#define sk_store_u4(v, p) vstore4(v, 0, p)
 #define sk_same_f4(a) ((float4)(a))
 /* Compilers of OpenCL C are made of Clang, which has subscripts and shuffles of vectors. */
 #define sk_lane(v, k) ((v)[k])
@@ -138,10 +139,18 @@ typedef int16 sk_iN_anywhere __attribute__((aligned(4)));
 #endif
 #if defined(__AVX512VL__) && __has_builtin(__builtin_ia32_storedqusi128_mask)
 /* This instruction writes no element but those asked for. Its function knows no address spaces. */
-#define sk_put_i4(target, n, v) __builtin_ia32_storedqusi128_mask((void*)(uintptr_t)(target), (v), (uchar)((1u << (n)) - 1u))
+#define sk_put_u4(target, n, v) __builtin_ia32_storedqusi128_mask((void*)(uintptr_t)(target), as_int4(v), (uchar)((1u << (n)) - 1u))
+#elif defined(__AVX2__) && __has_builtin(__builtin_ia32_maskstored)
+#define sk_put_u4(target, n, v) __builtin_ia32_maskstored((void*)(uintptr_t)(target), (int4)((int)(n)) > (int4)(0, 1, 2, 3), as_int4(v))
 #else
-#define sk_put_i4(target, n, v) \
-    for (uint sk_n = 0u; sk_n < (n); ++sk_n) (target)[sk_n] = (uint)(v)[sk_n]
+SK_FUNCTION void sk_put_u4(__global uint* target, uint n, sk_u4 v) {
+    if (n == 4u) {
+        vstore4(v, 0, target);
+    } else {
+        if (n >= 2u) vstore2(v.lo, 0, target);
+        if ((n & 1u) != 0u) target[n - 1u] = n == 1u ? v.x : v.z;
+    }
+}
 #endif
 #endif
 

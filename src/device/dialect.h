@@ -29,11 +29,11 @@
  *
  * Where SK_WIDTH is 8 or 16 (src/device/lanes.h), operators on vectors work on each element, comparisons give masks, scalars on one side
  * included, `mask ? a : b` with a mask of all bits or none, and:
- *   sk_fN sk_iN sk_f4 sk_i4  SK_WIDTH floats, as many sk_i32, 4 of each
- *   sk_make_f(a, …) sk_make_i(a, …) sk_make_i4(a, …) sk_lane(v, k)   k is a constant
+ *   sk_fN sk_iN sk_f4 sk_u4  SK_WIDTH floats, as many sk_i32, 4 floats, 4 sk_u32
+ *   sk_make_f(a, …) sk_make_i(a, …) sk_make_u4(a, …) sk_lane(v, k)   k is a constant
  *   sk_prefetch(p)                                               what p points to will be read or written soon
  *   sk_load_f4(p) sk_store_f4(v, p)                              global memory, aligned as one number is
- *   sk_store_i4(v, p)                                            4 sk_i32, as a shuffle gives them; the same
+ *   sk_store_u4(v, p) sk_store_i4(v, p)                          the same; 4 sk_i32, as a shuffle gives them
  *   sk_store_f(v, p) sk_store_i(v, p) sk_load_i(p)               of SK_WIDTH, in private memory too
  *   sk_same_f4(a)                                                four times a
  *   sk_lanes_to_float(i) sk_lanes_to_int(f)                      conversions; f in the range of sk_i32
@@ -42,7 +42,7 @@
  *   sk_lane_bits(mask)                                           bit k: the mask is set in lane k
  *   sk_put_i(target, bits, i)                                    target[0], … in private memory are the lanes whose bit is set; up to SK_WIDTH
  *                                                                more may be written
- *   sk_put_i4(target, n, v)                                      target[0] to target[n - 1] in global memory are the first of 4; no more is written
+ *   sk_put_u4(target, n, v)                                      target[0] to target[n - 1] in global memory are the first of 4; no more is written
  *   sk_shuffle(v, w, i, …)                                       elements of v and w, which are numbered on
  *
  * Not allowed: fma, mad, min, max, clamp, rsqrt, dot, cross, normalize, pow, exp, log, sin, float3, doubles without SK_DOUBLE, sub-groups,

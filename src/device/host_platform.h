@@ -58,12 +58,12 @@ inline thread_local sk_u32 sk_host_group = 0;
 /* Compile with -Wno-psabi: every function with vectors is called in its own file only. */
 #if SK_WIDTH > 1
 typedef float sk_f4 __attribute__((vector_size(16)));
-typedef sk_i32 sk_i4 __attribute__((vector_size(16)));
+typedef sk_u32 sk_u4 __attribute__((vector_size(16)));
 typedef float sk_fN __attribute__((vector_size(4 * SK_WIDTH)));
 typedef sk_i32 sk_iN __attribute__((vector_size(4 * SK_WIDTH)));
 #define sk_make_f(...) (sk_fN{__VA_ARGS__})
 #define sk_make_i(...) (sk_iN{__VA_ARGS__})
-#define sk_make_i4(a, b, c, d) (sk_i4{a, b, c, d})
+#define sk_make_u4(a, b, c, d) (sk_u4{a, b, c, d})
 #define sk_lane(v, k) ((v)[k])
 #define sk_prefetch(p) __builtin_prefetch(p)
 static inline sk_f4 sk_load_f4(const float* p) {
@@ -80,7 +80,8 @@ static inline sk_iN sk_load_i(const sk_i32* p) {
     std::memcpy(&r, p, sizeof r);
     return r;
 }
-static inline void sk_store_i4(sk_i4 v, sk_i32* p) { std::memcpy(p, &v, sizeof v); }
+static inline void sk_store_i4(sk_i32 __attribute__((vector_size(16))) v, sk_i32* p) { std::memcpy(p, &v, sizeof v); }
+static inline void sk_store_u4(sk_u4 v, sk_u32* p) { std::memcpy(p, &v, sizeof v); }
 #define sk_lanes_to_float(i) __builtin_convertvector(i, sk_fN)
 #define sk_lanes_to_int(f) __builtin_convertvector(f, sk_iN)
 #define sk_lanes_as_int(f) ((sk_iN)(f))
@@ -100,8 +101,8 @@ static inline void sk_put_i(sk_i32* target, sk_u32 bits, sk_iN i) {
     for (sk_u32 k = 0u; k < SK_WIDTH; ++k)
         if ((bits >> k & 1u) != 0u) *target++ = i[k];
 }
-static inline void sk_put_i4(sk_u32* target, sk_u32 n, sk_i4 v) {
-    for (sk_u32 k = 0u; k < n; ++k) target[k] = static_cast<sk_u32>(v[k]);
+static inline void sk_put_u4(sk_u32* target, sk_u32 n, sk_u4 v) {
+    for (sk_u32 k = 0u; k < n; ++k) target[k] = v[k];
 }
 #endif
 

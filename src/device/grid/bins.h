@@ -59,12 +59,11 @@ SK_FUNCTION sk_run_of_triangles sk_make_run(SK_GLOBAL sk_u32* next, SK_GLOBAL sk
 
 #if SK_WIDTH > 1
 /** Pairs of the lowest four bits of a mask, which are taken from it; of fewer, where it has no more. */
-SK_FUNCTION sk_i4 sk_next_four(sk_u64* mask, sk_u32 corner) {
+SK_FUNCTION sk_u4 sk_next_four(sk_u64* mask, sk_u32 corner) {
     const sk_u64 after_a = *mask & (*mask - 1u), after_b = after_a & (after_a - 1u), after_c = after_b & (after_b - 1u);
-    const sk_i4 bits = sk_make_i4((sk_i32)sk_lowest_bit(*mask), (sk_i32)sk_lowest_bit(after_a), (sk_i32)sk_lowest_bit(after_b),
-                                  (sk_i32)sk_lowest_bit(after_c));
+    const sk_u4 bits = sk_make_u4(sk_lowest_bit(*mask), sk_lowest_bit(after_a), sk_lowest_bit(after_b), sk_lowest_bit(after_c));
     *mask = after_c & (after_c - 1u);
-    return ((bits & 3) + (bits << 2 & 0x30) + (bits << 4 & 0x300)) * (sk_i32)SK_SPAN + (sk_i32)corner;
+    return ((bits & 3u) + (bits << 2 & 0x30u) + (bits << 4 & 0x300u)) * SK_SPAN + corner;
 }
 #endif
 
@@ -79,8 +78,8 @@ SK_FUNCTION void sk_hand_over_bin(sk_run_of_triangles run, sk_u32 bin, sk_u32 fi
         /* Four at once: most triangles have no more, and where a loop over single bits ends is guessed wrong. */
         sk_u64 rest = mask;
         sk_u32 left = count;
-        for (; left > 4u; left -= 4u, pairs += 4) sk_store_i4(sk_next_four(&rest, corner), (SK_GLOBAL sk_i32*)pairs);
-        sk_put_i4(pairs, left, sk_next_four(&rest, corner));
+        for (; left > 4u; left -= 4u, pairs += 4) sk_store_u4(sk_next_four(&rest, corner), pairs);
+        sk_put_u4(pairs, left, sk_next_four(&rest, corner));
 #else
         for (sk_u64 rest = mask; rest != 0u; rest &= rest - 1u) *pairs++ = corner + sk_pair_of(sk_bin_step(sk_lowest_bit(rest)), 0u);
 #endif
