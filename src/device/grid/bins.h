@@ -340,6 +340,9 @@ SK_FUNCTION sk_iN sk_sum_of_four(sk_iN a) {
     return r + sk_shuffle(r, r, SK_EACH_FOUR(SK_OTHER_LANES));
 }
 
+/** Bits 0, 4, 8 and 12, which others are not beside, as bits 0 to 3: the product has each of them four times, and bits 12 to 15 one of each. */
+SK_FUNCTION sk_u32 sk_every_fourth(sk_u32 bits) { return (bits & 0x1111u) * 0x1248u >> 12 & 15u; }
+
 /** The records of blocks beside each other, a cell along x in each lane, as words of sk_block; bits of lanes whose block is not empty; the longest lists. */
 typedef struct sk_counted_lanes {
     sk_iN words, longest;
@@ -389,8 +392,7 @@ SK_FUNCTION sk_u32 sk_count_bin(sk_u32 bin, sk_u32 first, sk_u32 end, SetkaGridH
                     of_four = sk_count_lanes(counters + sk_cell_in_bin(4u * x, 4u * y, 4u * z));
                     longest_lists = sk_max_i(longest_lists, of_four.longest);
                 }
-                for (sk_u32 k = 0u; k < blocks; ++k)
-                    own_filled |= (sk_u64)(of_four.filled >> 4u * k & 1u) << sk_bit_in_block(x + k, y, z);
+                own_filled |= (sk_u64)sk_every_fourth(of_four.filled) << sk_bit_in_block(x, y, z);
                 if (blocks == SK_WIDTH / 4u) {
                     sk_store_i(of_four.words, (SK_GLOBAL sk_i32*)(counted + b));
                 } else {
