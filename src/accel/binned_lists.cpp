@@ -31,16 +31,18 @@ std::uint64_t usual_pairs(std::uint32_t triangles, float density) {
     return static_cast<std::uint64_t>(std::ceil(double(triangles) * (2 + 4 * side * side))) + 8192;
 }
 
-/// Runs long enough to be worth their counters, and so many that cores come out even; a work-item takes a sixteenth of what a core does, with
-/// counters that stay in its cache. Other devices may end a long loop early, or have very many work-items: there bins and short runs have one each.
+/// Runs long enough to be worth their bounds, short enough to stay in a core's cache, and so many that cores come out even; a work-item takes a
+/// sixteenth of what a core does of the bins, and an eighth of the runs, with counters and reaches that stay there too. Other devices may end a long
+/// loop early, or have very many work-items: there bins and short runs have one each.
 BinRoom divided(const Device& device, std::uint32_t triangles, BinRoom room) {
     constexpr std::uint32_t most_counters = 1u << 24, most_items = 256;
     const std::uint32_t shortest = prefers_bins(device) ? 2048 : 64;
     const std::uint32_t shares = 16 * std::max(1u, device.info().compute_units);
     const std::uint64_t runs = prefers_bins(device) ? std::max(64u, shares) : divide_up(triangles, shortest);
     const std::uint64_t most_runs = std::clamp<std::uint64_t>(most_counters / room.bins, 1, runs);
-    room.run = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(divide_up(triangles, most_runs), shortest, SK_SPAN));
+    room.run = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(divide_up(triangles, most_runs), shortest, SK_LONGEST_RUN));
     room.runs = static_cast<std::uint32_t>(divide_up(triangles, room.run));
+    room.run_items = prefers_bins(device) ? std::min({room.runs, shares / 4, most_items}) : room.runs;
     room.items = prefers_bins(device) ? std::min({room.bins, shares, most_items}) : room.bins;
     return room;
 }
@@ -68,47 +70,38 @@ BinRoom usual_room(const Device& device, std::uint32_t triangles, const GridOpti
                     .pairs = static_cast<std::uint32_t>(pairs)});
 }
 
-/// The bytes that both counting and placing hold, world triangles not included.
+std::uint64_t reaches_of(const BinRoom& room) { return std::uint64_t(room.run_items) * room.run * reach_words; }
+std::uint64_t bounds_of(const BinRoom& room) { return room.runs * (room.bins + std::uint64_t(1)); }
+
+/// The bytes that both filling and placing hold, world triangles not included.
 std::uint64_t kept_bytes(const Device& device, const BinRoom& room) {
     return report_bytes + block_sums_bytes(device, room.blocks) +
-           (std::uint64_t(room.runs) * room.bins + room.bins + std::uint64_t(1) + room.pairs +
-            std::uint64_t(room.items) * SK_BIN_CELLS + 2 * std::uint64_t(room.bins) + room.blocks * block_words) *
+           (bounds_of(room) + room.pairs + std::uint64_t(room.items) * SK_BIN_CELLS + 2 * std::uint64_t(room.bins) +
+            room.blocks * block_words) *
                word;
 }
 
-/// The bytes that counting holds, world triangles not included.
-std::uint64_t count_bytes(const Device& device, std::uint32_t triangles, const BinRoom& room) {
-    return kept_bytes(device, room) + triangles * reach_words * word +
-           divide_up(room.bins, SK_BIN_PART) * sizeof(std::uint64_t);
+/// The bytes that filling holds, world triangles not included.
+std::uint64_t fill_bytes(const Device& device, const BinRoom& room) {
+    return kept_bytes(device, room) + reaches_of(room) * word;
 }
 
-/// Whether counting fits the budget beside the world's triangles, and each of its tables one allocation.
-bool fits_counting(const GridLimits& limits, const Device& device, const WorldGeometry& geometry, const BinRoom& room) {
-    const std::uint32_t n = geometry.triangle_count;
-    for (const std::uint64_t words : {std::uint64_t(room.pairs), n * reach_words, room.blocks * block_words,
-                                      std::uint64_t(room.runs) * room.bins, std::uint64_t(room.items) * SK_BIN_CELLS})
+/// Whether filling fits the budget beside the world's triangles, and each of its tables one allocation.
+bool fits_filling(const GridLimits& limits, const Device& device, const WorldGeometry& geometry, const BinRoom& room) {
+    for (const std::uint64_t words : {std::uint64_t(room.pairs), reaches_of(room), room.blocks * block_words, bounds_of(room),
+                                      std::uint64_t(room.items) * SK_BIN_CELLS})
         if (!limits.fits_an_allocation(words)) return false;
-    return limits.fits(geometry.triangles.size_bytes() + count_bytes(device, n, room));
+    return limits.fits(geometry.triangles.size_bytes() + fill_bytes(device, room));
 }
 
-/// Launches a kernel over all bins, every work-item a group of its own. Where a stop can be requested, some at a time.
+/// Launches a kernel whose work-items take every `items`-th of n runs or bins, each of them a group of its own. Where a stop can be requested, some
+/// at a time.
 template <typename... Ts>
-void launch_bins(Queue& queue, Kernel kernel, std::uint32_t bins, std::uint32_t items, const Ts&... arguments) {
-    const std::uint32_t step = queue.impl().stop_token().stop_possible() ? 4 * items : bins;
-    for (std::uint32_t first = 0; first < bins; first += std::min(step, bins - first)) {
-        const std::uint32_t end = first + std::min(step, bins - first), own = std::min(items, end - first);
+void launch_strided(Queue& queue, Kernel kernel, std::uint32_t n, std::uint32_t items, const Ts&... arguments) {
+    const std::uint32_t step = queue.impl().stop_token().stop_possible() ? 4 * items : n;
+    for (std::uint32_t first = 0; first < n; first += std::min(step, n - first)) {
+        const std::uint32_t end = first + std::min(step, n - first), own = std::min(items, end - first);
         launch_groups(queue, kernel, own, 1, end, first, own, arguments...);
-    }
-}
-
-/// The same over runs of triangles.
-template <typename... Ts>
-void launch_runs(Queue& queue, Kernel kernel, const BinRoom& room, const Ts&... arguments) {
-    const std::uint32_t step =
-        queue.impl().stop_token().stop_possible() ? std::max(1u, (1u << 16) / room.run) : room.runs;
-    for (std::uint32_t first = 0; first < room.runs; first += step) {
-        const std::uint32_t end = std::min(room.runs, first + step);
-        launch_groups(queue, kernel, end - first, 1, end, first, room.run, room.bins, arguments...);
     }
 }
 
@@ -116,45 +109,25 @@ void launch_runs(Queue& queue, Kernel kernel, const BinRoom& room, const Ts&... 
 /// their own (scattered_lists.hpp).
 std::uint32_t most_units(std::uint32_t triangles) { return triangles / 4 + (1u << 14); }
 
-/// Counts the pairs of each bin of the grid in the report, in each run.
-BinnedCount enqueue_count(Queue& queue, const WorldGeometry& geometry, const Buffer<std::uint32_t>& report,
-                          const BinRoom& room) {
-    const auto parts = static_cast<std::uint32_t>(divide_up(room.bins, SK_BIN_PART));
+/// Leaves the pairs of each run in order of the bins of the grid in the report, if there is room, and counts the blocks' cells and pairs.
+BinnedCount enqueue_bins(Queue& queue, const WorldGeometry& geometry, const Buffer<std::uint32_t>& report, const BinRoom& room) {
+    const std::uint32_t most = most_units(geometry.triangle_count);
     BinnedCount count;
     count.room = room;
     count.report = report;
-    queue.impl().begin_stage("count");
-    count.reaches = queue.make_buffer<std::uint32_t>(geometry.triangle_count * reach_words, "cells of small triangles");
-    count.run_counts = queue.make_buffer<std::uint32_t>(std::uint64_t(room.runs) * room.bins, "pairs of runs in bins");
-    count.part_sums = queue.make_buffer<std::uint64_t>(parts, "sums of bins");
-    count.starts = queue.make_buffer<std::uint32_t>(room.bins + std::uint64_t(1), "starts of bins");
-    const std::uint32_t most = most_units(geometry.triangle_count);
-    launch_runs(queue, Kernel::bins_count, room, most, geometry.triangles, count.reaches, count.run_counts, report);
-    launch_groups(queue, Kernel::bins_sum, parts, 1, parts, room.bins, room.runs, count.run_counts, count.part_sums);
-    launch_groups(queue, Kernel::bins_start, parts, 1, parts, room.bins, room.runs, most, count.part_sums,
-                  count.run_counts, count.starts, report);
-    return count;
-}
-
-/// Hands every pair to its bin, if there is room, and counts the blocks' cells and pairs.
-void enqueue_bins(Queue& queue, const WorldGeometry& geometry, BinnedCount& count) {
-    const BinRoom& room = count.room;
     queue.impl().begin_stage("bins");
+    count.reaches = queue.make_buffer<std::uint32_t>(reaches_of(room), "cells of small triangles");
+    count.bounds = queue.make_buffer<std::uint32_t>(bounds_of(room), "bounds of pairs in bins");
     count.pairs = queue.make_buffer<std::uint32_t>(room.pairs, "pairs in bins");
-    launch_runs(queue, Kernel::bins_fill, room, room.pairs, geometry.triangles, count.reaches, count.run_counts, count.pairs, count.report);
+    launch_strided(queue, Kernel::bins_fill, room.runs, room.run_items, room.run, room.bins, room.pairs, most, geometry.triangles,
+                   count.reaches, count.bounds, count.pairs, report);
     queue.impl().begin_stage("blocks");
     count.counters = queue.make_buffer<std::uint32_t>(std::uint64_t(room.items) * SK_BIN_CELLS, "counters of bins");
     count.filled = queue.make_buffer<std::uint64_t>(room.bins, "filled blocks of bins");
     count.blocks = queue.make_buffer<std::uint32_t>(room.blocks * block_words, "counted blocks");
-    launch_bins(queue, Kernel::bins_tally, room.bins, room.items, room.pairs, room.blocks, count.starts, count.pairs, count.counters,
-                count.blocks, count.filled, count.report);
-    count.block_sums = enqueue_block_sums(queue, count.blocks, count.report);
-}
-
-/// What is left of a count whose bins have had no room for all pairs.
-BinnedCount without_bins(BinnedCount count) {
-    count.pairs = count.counters = count.blocks = {};
-    count.filled = count.block_sums = {};
+    launch_strided(queue, Kernel::bins_tally, room.bins, room.items, room.run, room.runs, room.bins, room.pairs, most, room.blocks,
+                   count.bounds, count.pairs, count.counters, count.blocks, count.filled, report);
+    count.block_sums = enqueue_block_sums(queue, count.blocks, report);
     return count;
 }
 
@@ -169,16 +142,14 @@ BinnedCount start_bins(Queue& queue, const StartedTransform& transform, const Gr
     const std::uint32_t n = geometry.triangle_count;
     const BinRoom room = usual_room(device, n, options);
     if (!device.impl()->has_doubles() || queue.stop_token().stop_possible() || room.blocks == 0 ||
-        !fits_counting(limits, device, geometry, room)) {
+        !fits_filling(limits, device, geometry, room)) {
         BinnedCount nothing;
         nothing.report = transform.report;
         return nothing;
     }
     launch_items(queue, Kernel::grid_resolve, 1, room.blocks, options.density, options.max_cells_per_axis, n,
                  geometry.instance_count, transform.report);
-    BinnedCount count = enqueue_count(queue, geometry, transform.report, room);
-    enqueue_bins(queue, geometry, count);
-    return count;
+    return enqueue_bins(queue, geometry, transform.report, room);
 }
 
 std::optional<BinnedCount> finish_bins(Queue& queue, const WorldGeometry& geometry, ::SetkaGridHeader& header,
@@ -189,58 +160,43 @@ std::optional<BinnedCount> finish_bins(Queue& queue, const WorldGeometry& geomet
     const std::uint64_t world = geometry.triangles.size_bytes();
     BinnedCount count = std::move(started);
     BlockTotals totals = totals_of(words);
-    const auto fits = [&](const BinRoom& room) { return fits_counting(limits, device, geometry, room); };
-    /// Counts in this grid, and fills bins if there is room for pairs.
-    const auto count_again = [&](std::uint64_t pairs) {
+    const auto fits = [&](const BinRoom& room) { return fits_filling(limits, device, geometry, room); };
+    /// Fills bins of this grid if there is room for so many pairs; with room for none they are counted.
+    const auto fill_again = [&](std::uint64_t pairs) {
         const BinRoom room = room_of(device, header, pairs);
         if (!fits(room)) return false;
         const Buffer<std::uint32_t> report = std::exchange(count, {}).report;
         report_header(queue, report, header);
-        held_bytes = std::max(held_bytes, count_bytes(device, n, room));
-        count = enqueue_count(queue, geometry, report, room);
-        if (pairs != 0) enqueue_bins(queue, geometry, count);
+        held_bytes = std::max(held_bytes, fill_bytes(device, room));
+        count = enqueue_bins(queue, geometry, report, room);
         totals = totals_of(read_report(queue, report));
         return true;
     };
-    const auto fill_bins = [&] {
-        BinRoom room = count.room;
-        room.pairs = static_cast<std::uint32_t>(totals.binned_pairs);
-        if (!fits(room)) return false;
-        held_bytes = std::max(held_bytes, count_bytes(device, n, room));
-        count = without_bins(std::move(count));
-        count.room = room;
-        enqueue_bins(queue, geometry, count);
-        totals = totals_of(read_report(queue, count.report));
-        return true;
-    };
-    if (count.room.blocks != 0) held_bytes = count_bytes(device, n, count.room);
+    if (count.room.blocks != 0) held_bytes = fill_bytes(device, count.room);
     const bool has_room = count.room.blocks >= block_count(header) && count.room.bins >= bin_count(header);
     if (!has_room || !has_header(words, header)) {
-        // Where every launch is waited for, one more wait for the number of pairs is no matter. Else this is a sheet most likely, whose
-        // triangles lie in their cells with all of their area.
-        const std::uint64_t pairs =
-            queue.stop_token().stop_possible() ? 0 : std::min(4 * usual_pairs(n, options.density), most_entries);
-        if ((pairs == 0 || !count_again(pairs)) && !count_again(0)) return {};
+        // Where the room that is usual was not enough this is a sheet most likely, whose triangles lie in their cells with all of their area.
+        const std::uint64_t usual = usual_pairs(n, options.density), wanted = count.room.blocks != 0 ? 4 * usual : usual;
+        if (!fill_again(std::min(wanted, most_entries)) && !fill_again(0)) return {};
     }
     if (totals.long_rows >= most_units(n)) return {};
     if (totals.binned_pairs > most_entries)
         limits.refuse_count((totals.found_long_rows < SK_MOST_LONG_ROWS ? "" : "at least ") +
                             std::to_string(totals.binned_pairs) + " pairs (triangle, cell)");
-    if (totals.binned_pairs > count.room.pairs && !fill_bins()) return {};
+    if (totals.binned_pairs > count.room.pairs && !fill_again(totals.binned_pairs)) return {};
     const auto has_space = [&] {
         header.reference_count = static_cast<std::uint32_t>(totals.pairs);
         count.cells = totals.cells;
         count.longest_list = totals.longest_list;
         return limits.fits(world + binned_bytes(device, header, count));
     };
-    if (!has_space() && (!count_again(0) || !fill_bins() || !has_space())) return {};
+    if (!has_space() && (!fill_again(totals.binned_pairs) || !has_space())) return {};
     count.reaches = {};
-    count.part_sums = {};
     return count;
 }
 
-std::uint64_t started_bytes(const Device& device, std::uint32_t triangles, const BinnedCount& started) {
-    return started.room.blocks == 0 ? report_bytes : count_bytes(device, triangles, started.room);
+std::uint64_t started_bytes(const Device& device, const BinnedCount& started) {
+    return started.room.blocks == 0 ? report_bytes : fill_bytes(device, started.room);
 }
 
 std::uint64_t binned_bytes(const Device& device, const ::SetkaGridHeader& header, const BinnedCount& count) {
@@ -256,9 +212,8 @@ CompactTables build_binned(Queue& queue, const ::SetkaGridHeader& header, Binned
     tables.references = queue.make_buffer<std::uint32_t>(header.reference_count, "references");
     enqueue_block_starts(queue, count.block_sums, count.blocks);
     queue.impl().begin_stage("lists");
-    launch_bins(queue, Kernel::bins_place, bin_count(header), count.room.items, count.room.run, count.room.runs, count.room.bins, header,
-                count.starts, count.run_counts, count.pairs, count.counters, count.blocks, count.filled, tables.blocks, tables.cells,
-                tables.references);
+    launch_strided(queue, Kernel::bins_place, bin_count(header), count.room.items, count.room.run, count.room.runs, count.room.bins, header,
+                   count.bounds, count.pairs, count.counters, count.blocks, count.filled, tables.blocks, tables.cells, tables.references);
     tables.longest_list = count.longest_list;
     return tables;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-/// How do a grid's tables come about where few work-items run at a time? Runs of triangles hand their pairs to bins of cells, and each bin
-/// makes its own lists (device/grid/bins.h).
+/// How do a grid's tables come about where few work-items run at a time? Runs of triangles leave their pairs in order of bins of cells, and each
+/// bin makes its own lists (device/grid/bins.h).
 #pragma once
 
 #include <optional>
@@ -16,9 +16,10 @@ struct BinRoom {
     std::uint32_t blocks = 0;
     std::uint32_t bins = 0;
     std::uint32_t pairs = 0;
-    std::uint32_t run = 0;    ///< triangles in each run
+    std::uint32_t run = 0;        ///< triangles in each run
     std::uint32_t runs = 0;
-    std::uint32_t items = 0;  ///< work-items that bins are spread over
+    std::uint32_t run_items = 0;  ///< work-items that runs are spread over
+    std::uint32_t items = 0;      ///< the same of bins
 };
 
 /// What counting leaves for placing.
@@ -27,14 +28,12 @@ struct BinnedCount {
     std::uint32_t longest_list = 0;
     BinRoom room;
     Buffer<std::uint32_t> report;
-    Buffer<std::uint32_t> reaches;       ///< 4 words a triangle
-    Buffer<std::uint32_t> run_counts;    ///< of pairs, for each bin in each run; where they end there, once they are in bins
-    Buffer<std::uint64_t> part_sums;     ///< of SK_BIN_PART bins
-    Buffer<std::uint32_t> starts;        ///< of bins
+    Buffer<std::uint32_t> reaches;   ///< of a run, for each work-item: 4 words a triangle
+    Buffer<std::uint32_t> bounds;    ///< of each bin's pairs in each run
     Buffer<std::uint32_t> pairs;
-    Buffer<std::uint32_t> counters;      ///< of a bin, for each work-item
-    Buffer<std::uint64_t> filled;        ///< a bit for each block of a bin
-    Buffer<std::uint32_t> blocks;        ///< counted ones; a grid's own are made of them
+    Buffer<std::uint32_t> counters;  ///< of a bin, for each work-item
+    Buffer<std::uint64_t> filled;    ///< a bit for each block of a bin
+    Buffer<std::uint32_t> blocks;    ///< counted ones; a grid's own are made of them
     Buffer<std::uint64_t> block_sums;
 };
 
@@ -56,7 +55,7 @@ struct BinnedCount {
                                                      const Report& words, std::uint64_t& held_bytes);
 
 /// The bytes that start_bins() holds, the report included, world triangles not.
-[[nodiscard]] std::uint64_t started_bytes(const Device& device, std::uint32_t triangles, const BinnedCount& started);
+[[nodiscard]] std::uint64_t started_bytes(const Device& device, const BinnedCount& started);
 
 /// The bytes that build_binned() holds, tables included, world triangles not.
 [[nodiscard]] std::uint64_t binned_bytes(const Device& device, const ::SetkaGridHeader& header,

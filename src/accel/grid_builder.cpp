@@ -125,7 +125,7 @@ class UniformGridBuilder final : public GridBuilder {
 
     [[nodiscard]] static std::uint64_t started_bytes(const Device& device, const GridStart& start) {
         const std::uint32_t n = start.transform.geometry.triangle_count;
-        return start.bins.room.blocks != 0 ? setka::started_bytes(device, n, start.bins)
+        return start.bins.room.blocks != 0 ? setka::started_bytes(device, start.bins)
                                            : setka::started_bytes(device, n, start.count);
     }
 

@@ -20,7 +20,7 @@
     X(blocks_tally) X(blocks_settle)                                                                       \
     X(scatter_count) X(scatter_count_rows) X(scatter_place) X(scatter_place_rows) X(lists_sort)            \
     X(lists_rank) X(lists_merge)                                                                           \
-    X(bins_count) X(bins_sum) X(bins_start) X(bins_fill) X(bins_tally) X(bins_place)                       \
+    X(bins_fill) X(bins_tally) X(bins_place)                                                               \
     X(import_blocks) X(import_cells) X(export_counts) X(export_offsets) X(lists_move) X(lists_move_long)   \
     X(trace_pack) X(trace_brute_closest) X(trace_brute_any)                                                \
     X(trace_grid_closest_dda) X(trace_grid_closest_free) X(trace_grid_any_dda) X(trace_grid_any_free)      \

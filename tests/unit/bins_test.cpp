@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 /// Do the pairs of a triangle come to the bins that its cells are in, each once, wherever its corner lies between them, and nothing else? Do lists come
-/// out of them with the triangles of every span, and distances of empty blocks?
+/// out of them with the triangles of every run, and distances of empty blocks?
 // The translation comes before every file of the dialect.
 #include "device/host_platform.h"
 // The dialect.
@@ -50,15 +50,15 @@ TEST(Bins, GetEachPairOnce) {
         std::vector<sk_u32> counts(count, 0), next(count), pairs(std::size_t{count} * 2 * most_pairs, guard);
         for (sk_u32 b = 0; b < count; ++b) next[b] = b * 2 * most_pairs;
         const sk_reach reach = sk_make_reach(corner, SK_REACH_MASK, mask);
-        const sk_u32 span = 7 * SK_SPAN, triangle = span + turn;
-        sk_hand_over_mask(sk_make_run(counts.data(), nullptr, span, grid), reach, triangle, 0);
-        sk_hand_over_mask(sk_make_run(next.data(), pairs.data(), span, grid), reach, triangle, 1);
+        const sk_u32 triangle = SK_LONGEST_RUN - 1 - turn;
+        sk_hand_over_mask(sk_make_run(counts.data(), nullptr, grid), reach, triangle, 0);
+        sk_hand_over_mask(sk_make_run(next.data(), pairs.data(), grid), reach, triangle, 1);
         Pairs found;
         for (sk_u32 b = 0; b < count; ++b) {
             ASSERT_EQ(next[b] - b * 2 * most_pairs, counts[b]);
             for (sk_u32 p = b * 2 * most_pairs; p < (b + 1) * 2 * most_pairs; ++p) {
                 if (p < next[b]) found.emplace_back(b, sk_cell_of_pair(pairs[p]));
-                ASSERT_EQ(p < next[b] ? pairs[p] % SK_SPAN : pairs[p], p < next[b] ? turn : guard);
+                ASSERT_EQ(p < next[b] ? sk_triangle_of_pair(pairs[p]) : pairs[p], p < next[b] ? triangle : guard);
             }
         }
         std::sort(found.begin(), found.end());
@@ -73,50 +73,78 @@ TEST(Bins, RunsOfAGridWithoutTrianglesCountNothing) {
     constexpr sk_u32 bins = 5, runs = 4, length = 100;
     const std::vector<float> triangles(runs * length * 9);
     for (sk_u32 r = 0; r < runs; ++r) {
-        std::vector<sk_u32> counts(runs * bins, guard), report(SK_REPORT, 0), pairs(1);
-        std::vector<sk_reach> reaches(runs * length);
-        sk_count_run(r, length, bins, none, triangles.data(), reaches.data(), counts.data(), 1000, report.data());
-        sk_fill_run(r, length, bins, none, triangles.data(), reaches.data(), counts.data(), pairs.data(), report.data());
-        for (sk_u32 i = 0; i < runs * bins; ++i) ASSERT_EQ(counts[i], i / bins == r ? 0u : guard);
+        std::vector<sk_u32> bounds(runs * (bins + 1), guard), report(SK_REPORT, 0), pairs(1, guard);
+        std::vector<sk_reach> reaches(length, sk_reach{guard, guard, guard, guard});
+        sk_fill_run(r, length, bins, 1, 1000, none, triangles.data(), reaches.data(), bounds.data(), pairs.data(), report.data());
+        for (sk_u32 i = 0; i < runs * (bins + 1); ++i) ASSERT_EQ(bounds[i], i / (bins + 1) == r ? 0u : guard);
+        for (const sk_reach& reach : reaches) ASSERT_EQ(reach.corner_xy, guard);
+        ASSERT_EQ(pairs[0], guard);
+        ASSERT_EQ(report, std::vector<sk_u32>(SK_REPORT, 0));
     }
 }
 
-/// More triangles than a pair can tell apart, in few cells of two bins: each list has its own, in ascending order, whatever span they are of.
-TEST(Bins, ListsHaveTheTrianglesOfEverySpan) {
-    constexpr sk_u32 length = SK_SPAN / 2 - 1000, runs = 7, bins = 2;  // spans of two runs, the last of one
+/// A grid of 20 x 16 x 16 cells, in two bins, whose triangles lie in their cells' middles: in two beside each other along x, or in one.
+struct FewCells {
+    static constexpr sk_u32 bins = 2;
     SetkaGridHeader grid{};
-    grid.dims[0] = 20;
-    grid.dims[1] = grid.dims[2] = 16;
-    grid.cell_count = 20 * 16 * 16;
-    grid.triangle_count = runs * length - 77;
-    // All but a few reach into nothing.
-    support::Random random(3);
-    std::vector<sk_reach> reaches(grid.triangle_count, sk_make_reach({0, 0, 0}, SK_REACH_MASK, 0));
-    std::vector<std::vector<sk_u32>> expected(grid.cell_count);
-    for (sk_u32 i = 0; i < grid.triangle_count; i += 1 + random.below(5000)) {
-        const sk_dims corner{random.below(17), 5, 9};
-        const sk_u64 mask = mask_of(random, 1);
-        reaches[i] = sk_make_reach(corner, SK_REACH_MASK, mask);
-        for (sk_u32 bit = 0; bit < 64; ++bit)
-            if ((mask >> bit & 1u) != 0u) expected[corner.x + bit % 4 + 20 * (corner.y + bit / 4 % 4 + 16 * (corner.z + bit / 16))].push_back(i);
-    }
-    std::vector<sk_u32> next(runs * bins, 0), starts(bins + 1), report(SK_REPORT, 0);
-    for (sk_u32 r = 0; r < runs; ++r)
-        sk_count_pairs(sk_make_run(&next[r * bins], nullptr, 0, grid), r * length, std::min((r + 1) * length, grid.triangle_count), grid, nullptr,
-                       reaches.data(), report.data());
-    std::vector<sk_u64> sums(1);
-    sk_sum_bins(0, bins, runs, next.data(), sums.data());
-    sk_start_bins(0, bins, runs, 1, sums.data(), next.data(), starts.data(), report.data());
-    std::vector<sk_u32> pairs(starts[bins]);
-    for (sk_u32 r = 0; r < runs; ++r) sk_fill_run(r, length, bins, grid, nullptr, reaches.data(), next.data(), pairs.data(), report.data());
+    std::vector<float> triangles;
+    std::vector<std::vector<sk_u32>> lists;
 
+    explicit FewCells(sk_u32 count) : lists(20 * 16 * 16) {
+        grid.dims[0] = 20;
+        grid.dims[1] = grid.dims[2] = 16;
+        grid.cell_size = grid.inverse_cell_size = 1;
+        grid.tolerance = 20 * 0x1p-17f;
+        grid.cell_count = 20 * 16 * 16;
+        grid.triangle_count = count;
+        support::Random random(3);
+        for (sk_u32 i = 0; i < count; ++i) {
+            const sk_u32 x = random.below(19), y = random.below(2) * 15, z = random.below(2) * 9, wide = random.below(2);
+            const float low = x + 0.25f, high = x + 0.75f + wide, across = y + 0.5f, up = z + 0.5f;
+            triangles.insert(triangles.end(), {low, across, up, high, across, up, low, across + 0.125f, up});
+            for (sk_u32 k = 0; k <= wide; ++k) lists[x + k + 20 * (y + 16 * z)].push_back(i);
+        }
+    }
+
+    sk_u32 pairs() const {
+        sk_u32 sum = 0;
+        for (const auto& list : lists) sum += static_cast<sk_u32>(list.size());
+        return sum;
+    }
+};
+
+/// Fills all runs, in some order, with one work-item's reaches.
+std::vector<sk_u32> fill(const FewCells& scene, sk_u32 length, const std::vector<sk_u32>& order, std::vector<sk_u32>& pairs, sk_u32 capacity,
+                         std::vector<sk_u32>& report) {
+    std::vector<sk_u32> bounds(order.size() * (FewCells::bins + 1), guard);
+    std::vector<sk_reach> reaches(length);
+    for (const sk_u32 r : order)
+        sk_fill_run(r, length, FewCells::bins, capacity, 1000, scene.grid, scene.triangles.data(), reaches.data(), bounds.data(), pairs.data(),
+                    report.data());
+    return bounds;
+}
+
+/// Each list has its triangles of every run, in ascending order, whichever run came first.
+TEST(Bins, ListsHaveTheTrianglesOfEveryRun) {
+    constexpr sk_u32 length = 3001, bins = FewCells::bins;
+    const std::vector<sk_u32> order{3, 0, 6, 2, 1, 5, 4};
+    const auto runs = static_cast<sk_u32>(order.size());
+    const FewCells scene(runs * length - 77);
+    const SetkaGridHeader& grid = scene.grid;
+    std::vector<sk_u32> report(SK_REPORT, 0), pairs(scene.pairs() + 1, guard);
+    const std::vector<sk_u32> bounds = fill(scene, length, order, pairs, scene.pairs(), report);
+    ASSERT_EQ(report[SK_TOTAL_BINNED_LOW], scene.pairs());
+    ASSERT_EQ(pairs.back(), guard);
+    ASSERT_TRUE(sk_is_binned(report.data(), scene.pairs(), 1));
+    ASSERT_FALSE(sk_is_binned(report.data(), scene.pairs(), 0));  // where large triangles are too many
+
+    const sk_binned all = sk_make_binned(bounds.data(), pairs.data(), length, runs, bins);
     const sk_dims in_blocks = sk_block_dims(sk_cell_dims(grid));
     const sk_u32 count = sk_block_count(in_blocks);
-    std::vector<sk_u32> counters(SK_BIN_CELLS), references(pairs.size());
+    std::vector<sk_u32> counters(SK_BIN_CELLS), references(scene.pairs());
     std::vector<sk_block> counted(count), blocks(count);
     std::vector<sk_u64> filled(bins);
-    for (sk_u32 b = 0; b < bins; ++b)
-        sk_count_bin(b, starts[b], starts[b + 1], grid, pairs.data(), counters.data(), counted.data(), filled.data());
+    for (sk_u32 b = 0; b < bins; ++b) sk_count_bin(b, grid, all, counters.data(), counted.data(), filled.data());
     for (sk_u32 b = 0; b < count; ++b) {
         const sk_u32 x = b % in_blocks.x, y = b / in_blocks.x % in_blocks.y, z = b / in_blocks.x / in_blocks.y;
         ASSERT_EQ(filled[x / 4] >> sk_bit_in_block(x, y, z) & 1u, sk_mask_of(counted[b]) != 0u ? 1u : 0u) << "block " << b;
@@ -127,22 +155,42 @@ TEST(Bins, ListsHaveTheTrianglesOfEverySpan) {
         cells += sk_bit_count(sk_mask_of(block));
         places += std::exchange(block.clearance, places);
     }
-    ASSERT_EQ(places, pairs.size());
+    ASSERT_EQ(places, scene.pairs());
     std::vector<sk_cell_list> lists(cells);
     for (sk_u32 b = 0; b < bins; ++b)
-        sk_place_bin(b, starts[b], starts[b + 1], length, runs, bins, next.data(), grid, pairs.data(), counters.data(), counted.data(), filled.data(),
-                     blocks.data(), lists.data(), references.data());
-    std::vector<sk_u32> of_span(4, 0);
+        sk_place_bin(b, grid, all, counters.data(), counted.data(), filled.data(), blocks.data(), lists.data(), references.data());
     for (sk_u32 c = 0; c < grid.cell_count; ++c) {
         const sk_u32 x = c % 20, y = c / 20 % 16, z = c / 320, bit = sk_bit_in_block(x, y, z);
         const sk_block block = blocks[sk_block_of(in_blocks, x, y, z)];
-        ASSERT_EQ(sk_has_bit(block, bit), expected[c].empty() ? 0u : 1u);
-        if (expected[c].empty()) continue;
+        const std::vector<sk_u32>& expected = scene.lists[c];
+        ASSERT_EQ(sk_has_bit(block, bit), expected.empty() ? 0u : 1u);
+        if (expected.empty()) continue;
         const sk_cell_list list = lists[block.first + sk_rank_of(block, bit)];
-        ASSERT_EQ(std::vector(&references[list.offset], &references[list.offset] + list.count), expected[c]) << "cell " << x << ' ' << y << ' ' << z;
-        for (const sk_u32 triangle : expected[c]) ++of_span[triangle / length / 2];
+        ASSERT_EQ(std::vector(&references[list.offset], &references[list.offset] + list.count), expected) << "cell " << x << ' ' << y << ' ' << z;
+        EXPECT_GT(list.count, 100u);
     }
-    for (const sk_u32 some : of_span) EXPECT_GT(some, 100u);
+}
+
+/// Where there is no room for the pairs of all runs they are all counted, and nothing is written beyond the room.
+TEST(Bins, RunsWithoutRoomCountTheirPairs) {
+    constexpr sk_u32 length = 500;
+    const std::vector<sk_u32> order{1, 0, 2};
+    const FewCells scene(1400);
+    for (const sk_u32 capacity : {0u, 1u, scene.pairs() / 2, scene.pairs() - 1}) {
+        std::vector<sk_u32> report(SK_REPORT, 0), pairs(scene.pairs() + 16, guard);
+        (void)fill(scene, length, order, pairs, capacity, report);
+        EXPECT_EQ(report[SK_TOTAL_BINNED_LOW], scene.pairs());
+        EXPECT_EQ(report[SK_TOTAL_BINNED_HIGH], 0u);
+        EXPECT_FALSE(sk_is_binned(report.data(), capacity, 1));
+        EXPECT_TRUE(std::all_of(pairs.begin() + capacity, pairs.end(), [](sk_u32 pair) { return pair == guard; })) << capacity;
+    }
+    // More than a word counts, from those before.
+    std::vector<sk_u32> report(SK_REPORT, 0), pairs(scene.pairs(), guard);
+    report[SK_TOTAL_BINNED_LOW] = ~0u - 10;
+    (void)fill(scene, length, {0}, pairs, scene.pairs(), report);
+    EXPECT_EQ(report[SK_TOTAL_BINNED_HIGH], 1u);
+    EXPECT_FALSE(sk_is_binned(report.data(), scene.pairs(), 1));
+    EXPECT_EQ(pairs, std::vector<sk_u32>(scene.pairs(), guard));
 }
 
 /// The distances that bins give their empty blocks are those that are found block by block.

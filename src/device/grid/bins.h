@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /**
  * How do lists come about without sorting and without atomics, where few work-items run at a time? Cells come in bins of 16 x 16 x 16. Each work-item
- * takes a run of triangles and hands their pairs (cell, triangle) to the bins; a bin is one work-item's then, whose counters fit the
- * nearest cache and are nobody else's. Runs follow each other in a bin, and triangles in a run, so that every list comes out in ascending
- * order.
+ * takes a run of triangles and writes its pairs (cell, triangle) bin by bin, in cache from the first to the last; a bin is one work-item's then, whose
+ * counters fit the nearest cache and are nobody else's. It takes its pairs from one run after the other, in which they follow the triangles, so that
+ * every list comes out in ascending order.
  */
 #ifndef SETKA_DEVICE_GRID_BINS_H
 #define SETKA_DEVICE_GRID_BINS_H
@@ -32,27 +32,22 @@ SK_FUNCTION sk_u64 sk_find_reaches(sk_u32 first, sk_u32 end, SetkaGridHeader gri
 
 #endif
 
-/**
- * A pair in a bin: the cell's number there, above the triangle's in its span. A span is as many whole runs as have SK_SPAN triangles at most; from
- * where the pairs of its last run end, which span a pair is of is known.
- */
-SK_FUNCTION sk_u32 sk_pair_of(sk_u32 cell, sk_u32 triangle) { return cell * SK_SPAN + triangle; }
-SK_FUNCTION sk_u32 sk_cell_of_pair(sk_u32 pair) { return pair / SK_SPAN; }
-SK_FUNCTION sk_u32 sk_runs_in_span(sk_u32 length) { return SK_SPAN / length; }
+/** A pair of a run in a bin: the cell's number there, above the triangle's in the run. */
+SK_FUNCTION sk_u32 sk_pair_of(sk_u32 cell, sk_u32 triangle) { return cell * SK_LONGEST_RUN + triangle; }
+SK_FUNCTION sk_u32 sk_cell_of_pair(sk_u32 pair) { return pair / SK_LONGEST_RUN; }
+SK_FUNCTION sk_u32 sk_triangle_of_pair(sk_u32 pair) { return pair % SK_LONGEST_RUN; }
 
 /** Where a run's pairs go. `next` has a number for each bin: of the run's pairs in it so far, or of the place of its next one. */
 typedef struct sk_run_of_triangles {
     SK_GLOBAL sk_u32* next;
     SK_GLOBAL sk_u32* pairs;
-    sk_u32 span; /* the first triangle of it */
     sk_dims bins;
 } sk_run_of_triangles;
 
-SK_FUNCTION sk_run_of_triangles sk_make_run(SK_GLOBAL sk_u32* next, SK_GLOBAL sk_u32* pairs, sk_u32 span, SetkaGridHeader grid) {
+SK_FUNCTION sk_run_of_triangles sk_make_run(SK_GLOBAL sk_u32* next, SK_GLOBAL sk_u32* pairs, SetkaGridHeader grid) {
     sk_run_of_triangles r;
     r.next = next;
     r.pairs = pairs;
-    r.span = span;
     r.bins = sk_bin_dims(sk_cell_dims(grid));
     return r;
 }
@@ -63,7 +58,7 @@ SK_FUNCTION sk_u4 sk_next_four(sk_u64* mask, sk_u32 corner) {
     const sk_u64 after_a = *mask & (*mask - 1u), after_b = after_a & (after_a - 1u), after_c = after_b & (after_b - 1u);
     const sk_u4 bits = sk_make_u4(sk_lowest_bit(*mask), sk_lowest_bit(after_a), sk_lowest_bit(after_b), sk_lowest_bit(after_c));
     *mask = after_c & (after_c - 1u);
-    return ((bits & 3u) + (bits << 2 & 0x30u) + (bits << 4 & 0x300u)) * SK_SPAN + corner;
+    return ((bits & 3u) + (bits << 2 & 0x30u) + (bits << 4 & 0x300u)) * SK_LONGEST_RUN + corner;
 }
 #endif
 
@@ -72,7 +67,7 @@ SK_FUNCTION void sk_hand_over_bin(sk_run_of_triangles run, sk_u32 bin, sk_u32 fi
     const sk_u32 count = sk_bit_count(mask), place = run.next[bin];
     if (put) {
         /* Cells of the mask add to this: what is too much for a bin's numbers falls off above. */
-        const sk_u32 corner = sk_pair_of(first, triangle - run.span);
+        const sk_u32 corner = sk_pair_of(first, triangle);
         SK_GLOBAL sk_u32* pairs = run.pairs + place;
 #if SK_WIDTH > 1
         /* Four at once: most triangles have no more, and where a loop over single bits ends is guessed wrong. */
@@ -127,7 +122,7 @@ SK_FUNCTION sk_u32 sk_hand_over_column(sk_run_of_triangles run, sk_cell_triangle
         const sk_u32 place = *next, first = sk_cell_in_bin(x, y, z);
         *next = place + cells;
         if (put)
-            for (sk_u32 c = 0u; c < cells; ++c) run.pairs[place + c] = sk_pair_of(first + c * stride, triangle - run.span);
+            for (sk_u32 c = 0u; c < cells; ++c) run.pairs[place + c] = sk_pair_of(first + c * stride, triangle);
         k += cells;
     }
     return end - column.first;
@@ -187,7 +182,7 @@ SK_FUNCTION int sk_have_too_many(sk_u64 units, sk_u32 most_units, SK_GLOBAL sk_u
 }
 
 /**
- * Hands over the pairs of triangle i. Those without a mask are counted until they are known to be more than any grid may have: it is refused
+ * Hands over the pairs of the run's triangle i. Those without a mask are counted until they are known to be more than any grid may have: it is refused
  * then, so that what other work-items see of that changes nothing else.
  */
 SK_FUNCTION void sk_hand_over(sk_run_of_triangles run, sk_u32 i, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
@@ -202,95 +197,101 @@ SK_FUNCTION void sk_hand_over(sk_run_of_triangles run, sk_u32 i, SetkaGridHeader
     }
 }
 
-/** Counts the pairs of triangles first to end - 1: two at a time from far apart, as those beside each other wait for the counter of the same bin. */
-SK_FUNCTION void sk_count_pairs(sk_run_of_triangles run, sk_u32 first, sk_u32 end, SetkaGridHeader grid,
-                                SK_GLOBAL const float* triangles, SK_GLOBAL const sk_reach* reaches, SK_GLOBAL sk_u32* report) {
-    const sk_u32 each = first < end ? (end - first) / 2u : 0u; /* a grid of zeros has no triangles, and ends before most runs begin */
-    for (sk_u32 k = 0u; k < each; ++k) {
-        sk_hand_over(run, first + k, grid, triangles, reaches, report, 0);
-        sk_hand_over(run, first + each + k, grid, triangles, reaches, report, 0);
+/** Counts the pairs of the first n triangles: two at a time from far apart, as those beside each other wait for the counter of the same bin. */
+SK_FUNCTION void sk_count_pairs(sk_run_of_triangles run, sk_u32 n, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
+                                SK_GLOBAL const sk_reach* reaches, SK_GLOBAL sk_u32* report) {
+    for (sk_u32 k = 0u; k < n / 2u; ++k) {
+        sk_hand_over(run, k, grid, triangles, reaches, report, 0);
+        sk_hand_over(run, n / 2u + k, grid, triangles, reaches, report, 0);
     }
-    if (first + 2u * each < end) sk_hand_over(run, end - 1u, grid, triangles, reaches, report, 0);
+    if (n % 2u != 0u) sk_hand_over(run, n - 1u, grid, triangles, reaches, report, 0);
 }
 
-/**
- * Run r of `length` triangles: their reaches, and counts[r * bins + b], its pairs in bin b. Nothing where the grid has more bins than that, and
- * no counts where large triangles are known to have too many cells: no bins are made then.
- */
-SK_FUNCTION void sk_count_run(sk_u32 r, sk_u32 length, sk_u32 bins, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
-                              SK_GLOBAL sk_reach* reaches, SK_GLOBAL sk_u32* counts, sk_u32 most_units, SK_GLOBAL sk_u32* report) {
-    SK_GLOBAL sk_u32* own = counts + (size_t)r * bins;
-    const sk_u32 first = r * length, end = sk_min_u32(first + length, grid.triangle_count);
-    const sk_run_of_triangles run = sk_make_run(own, (SK_GLOBAL sk_u32*)0, 0u, grid);
-    for (sk_u32 b = 0u; b < bins; ++b) own[b] = 0u;
-    if (sk_block_count(run.bins) <= bins) {
-        if (!sk_have_too_many(sk_find_reaches(first, end, grid, triangles, reaches), most_units, report))
-            sk_count_pairs(run, first, end, grid, triangles, reaches, report);
+/** Numbers of pairs become places from `place` on. */
+SK_FUNCTION void sk_start_bins(sk_u32 place, sk_u32 bins, SK_GLOBAL sk_u32* next) {
+    for (sk_u32 b = 0u; b < bins; ++b) {
+        const sk_u32 count = next[b];
+        next[b] = place;
+        place += count;
     }
 }
 
-/** The same run's pairs go where `next` says, which is changed. */
-SK_FUNCTION void sk_fill_run(sk_u32 r, sk_u32 length, sk_u32 bins, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
-                             SK_GLOBAL const sk_reach* reaches, SK_GLOBAL sk_u32* next, SK_GLOBAL sk_u32* pairs,
-                             SK_GLOBAL sk_u32* report) {
-    const sk_u32 first = r * length, end = sk_min_u32(first + length, grid.triangle_count);
-    const sk_run_of_triangles run =
-        sk_make_run(next + (size_t)r * bins, pairs, (r - r % sk_runs_in_span(length)) * length, grid);
-    if (sk_block_count(run.bins) <= bins)
-        for (sk_u32 i = first; i < end; ++i) sk_hand_over(run, i, grid, triangles, reaches, report, 1);
-}
-
-/** A part of the bins, whose counts are made places by one work-item. */
-SK_FUNCTION sk_u32 sk_part_end(sk_u32 part, sk_u32 bins) { return sk_min_u32((part + 1u) * SK_BIN_PART, bins); }
-
-/** sums[part] = the pairs of its bins in all runs. */
-SK_FUNCTION void sk_sum_bins(sk_u32 part, sk_u32 bins, sk_u32 runs, SK_GLOBAL const sk_u32* counts,
-                             SK_GLOBAL sk_u64* sums) {
-    const sk_u32 end = sk_part_end(part, bins);
+/** How many pairs of all bins are counted. */
+SK_FUNCTION sk_u64 sk_sum_bins(sk_u32 bins, SK_GLOBAL const sk_u32* next) {
     sk_u64 sum = 0u;
-    for (sk_u32 r = 0u; r < runs; ++r)
-        for (sk_u32 b = part * SK_BIN_PART; b < end; ++b) sum += counts[(size_t)r * bins + b];
-    sums[part] = sum;
+    for (sk_u32 b = 0u; b < bins; ++b) sum += next[b];
+    return sum;
 }
 
 /**
- * The counts of a part's bins become places of their first pairs, starts[b] those of bins, starts[bins] and the report the number of all;
- * the largest number where not all were counted.
+ * Run r of `length` triangles: its pairs bin by bin, those of bin b from bounds[r * (bins + 1) + b] on, behind those of whichever run came before. They
+ * are only counted where there is no room for them; and nothing is, where the grid has more bins than that, or where large triangles are known to have
+ * too many cells: no bins are made then. `reaches` are the work-item's own, room for those of a run.
  */
-SK_FUNCTION void sk_start_bins(sk_u32 part, sk_u32 bins, sk_u32 runs, sk_u32 most_units, SK_GLOBAL const sk_u64* sums,
-                               SK_GLOBAL sk_u32* counts, SK_GLOBAL sk_u32* starts, SK_GLOBAL sk_u32* report) {
-    const sk_u32 end = sk_part_end(part, bins);
-    sk_u64 before = 0u;
-    sk_u32 place;
-    for (sk_u32 p = 0u; p < part; ++p) before += sums[p];
-    place = (sk_u32)before;
-    for (sk_u32 b = part * SK_BIN_PART; b < end; ++b) {
-        starts[b] = place;
-        for (sk_u32 r = 0u; r < runs; ++r) {
-            const sk_u32 count = counts[(size_t)r * bins + b];
-            counts[(size_t)r * bins + b] = place;
-            place += count;
+SK_FUNCTION void sk_fill_run(sk_u32 r, sk_u32 length, sk_u32 bins, sk_u32 capacity, sk_u32 most_units, SetkaGridHeader grid,
+                             SK_GLOBAL const float* triangles, SK_GLOBAL sk_reach* reaches, SK_GLOBAL sk_u32* bounds,
+                             SK_GLOBAL sk_u32* pairs, SK_GLOBAL sk_u32* report) {
+    SK_GLOBAL sk_u32* own = bounds + (size_t)r * (bins + 1u);
+    SK_GLOBAL const float* first = triangles + (size_t)r * length * 9u;
+    const sk_u32 before = sk_min_u32(r * length, grid.triangle_count), n = sk_min_u32(length, grid.triangle_count - before);
+    const sk_run_of_triangles run = sk_make_run(own + 1, pairs, grid);
+    int has_counted = sk_block_count(run.bins) <= bins;
+    for (sk_u32 b = 0u; b <= bins; ++b) own[b] = 0u;
+    if (has_counted) has_counted = !sk_have_too_many(sk_find_reaches(0u, n, grid, first, reaches), most_units, report);
+    if (has_counted) {
+        sk_u64 all;
+        sk_count_pairs(run, n, grid, first, reaches, report);
+        all = sk_sum_bins(bins, run.next);
+        own[0] = sk_add_to_total(report + SK_TOTAL_BINNED_LOW, report + SK_TOTAL_BINNED_HIGH, all);
+        if (all <= capacity && own[0] <= capacity - all) {
+            sk_start_bins(own[0], bins, run.next);
+            for (sk_u32 k = 0u; k < n; ++k) sk_hand_over(run, k, grid, first, reaches, report, 1);
         }
     }
-    if (end == bins) {
-        const sk_u64 all = report[SK_TOTAL_LONG] < most_units ? before + sums[part] : ~(sk_u64)0;
-        starts[bins] = place;
-        report[SK_TOTAL_BINNED_LOW] = (sk_u32)all;
-        report[SK_TOTAL_BINNED_HIGH] = (sk_u32)(all >> 32);
+}
+
+/** What all runs have left. */
+typedef struct sk_binned {
+    SK_GLOBAL const sk_u32* bounds; /* of run r in bin b: from r * (bins + 1) + b on, up to the next one's */
+    SK_GLOBAL const sk_u32* pairs;
+    sk_u32 length, runs, bins;
+} sk_binned;
+
+SK_FUNCTION sk_binned sk_make_binned(SK_GLOBAL const sk_u32* bounds, SK_GLOBAL const sk_u32* pairs, sk_u32 length, sk_u32 runs,
+                                     sk_u32 bins) {
+    sk_binned r;
+    r.bounds = bounds;
+    r.pairs = pairs;
+    r.length = length;
+    r.runs = runs;
+    r.bins = bins;
+    return r;
+}
+SK_FUNCTION SK_GLOBAL const sk_u32* sk_bounds_in_bin(sk_binned all, sk_u32 r, sk_u32 bin) {
+    return all.bounds + ((size_t)r * (all.bins + 1u) + bin);
+}
+
+/** Whether all pairs are in bins. */
+SK_FUNCTION int sk_is_binned(SK_GLOBAL const sk_u32* report, sk_u32 capacity, sk_u32 most_units) {
+    return report[SK_TOTAL_LONG] < most_units && report[SK_TOTAL_BINNED_HIGH] == 0u && report[SK_TOTAL_BINNED_LOW] <= capacity;
+}
+
+/** Counts the pairs of a bin in its cells; how many these are. Where there are none, counters are left as they are. */
+SK_FUNCTION sk_u32 sk_count_in_bin(sk_binned all, sk_u32 bin, SK_GLOBAL sk_u32* counters) {
+    sk_u32 count = 0u;
+    for (sk_u32 r = 0u; r < all.runs; ++r) {
+        SK_GLOBAL const sk_u32* bounds = sk_bounds_in_bin(all, r, bin);
+        const sk_u32 end = bounds[1];
+        sk_u32 p = bounds[0];
+        if (p < end && count == 0u) {
+            sk_four_counts none;
+            none.a = none.b = none.c = none.d = 0u;
+            for (sk_u32 c = 0u; c < SK_BIN_CELLS / 4u; ++c) ((SK_GLOBAL sk_four_counts*)counters)[c] = none;
+        }
+        count += end - p;
+        for (; p < end; ++p) counters[sk_cell_of_pair(all.pairs[p])] += 1u;
     }
-}
-
-/** Whether all pairs were handed over. */
-SK_FUNCTION int sk_is_binned(SK_GLOBAL const sk_u32* report, sk_u32 capacity) {
-    return report[SK_TOTAL_BINNED_HIGH] == 0u && report[SK_TOTAL_BINNED_LOW] <= capacity;
-}
-
-/** Counts the pairs first to end - 1 of a bin in its cells. */
-SK_FUNCTION void sk_count_in_bin(sk_u32 first, sk_u32 end, SK_GLOBAL const sk_u32* pairs, SK_GLOBAL sk_u32* counters) {
-    sk_four_counts none;
-    none.a = none.b = none.c = none.d = 0u;
-    for (sk_u32 c = 0u; c < SK_BIN_CELLS / 4u; ++c) ((SK_GLOBAL sk_four_counts*)counters)[c] = none;
-    for (sk_u32 p = first; p < end; ++p) counters[sk_cell_of_pair(pairs[p])] += 1u;
+    return count;
 }
 
 /** The first block of a bin, and how many along each axis are inside the grid. */
@@ -372,8 +373,8 @@ SK_FUNCTION sk_counted_lanes sk_count_lanes(SK_GLOBAL const sk_u32* counters) {
 }
 
 /** The records of a bin's blocks as sk_count_block() makes them, and which of them are not empty; how long the longest list is. */
-SK_FUNCTION sk_u32 sk_count_bin(sk_u32 bin, sk_u32 first, sk_u32 end, SetkaGridHeader grid, SK_GLOBAL const sk_u32* pairs,
-                                SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_block* counted, SK_GLOBAL sk_u64* filled) {
+SK_FUNCTION sk_u32 sk_count_bin(sk_u32 bin, SetkaGridHeader grid, sk_binned all, SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_block* counted,
+                                SK_GLOBAL sk_u64* filled) {
     const sk_dims dims = sk_block_dims(sk_cell_dims(grid));
     const sk_bin_blocks own = sk_blocks_of_bin(dims, sk_bin_dims(sk_cell_dims(grid)), bin);
     sk_u32 lengths[SK_WIDTH], longest = 0u;
@@ -382,13 +383,13 @@ SK_FUNCTION sk_u32 sk_count_bin(sk_u32 bin, sk_u32 first, sk_u32 end, SetkaGridH
     sk_u64 own_filled = 0u;
     of_four.words = sk_same_i(0);
     of_four.filled = 0u;
-    if (first < end) sk_count_in_bin(first, end, pairs, counters);
+    const sk_u32 pairs = sk_count_in_bin(all, bin, counters);
     for (sk_u32 z = 0u; z < own.count.z; ++z)
         for (sk_u32 y = 0u; y < own.count.y; ++y)
             for (sk_u32 x = 0u; x < own.count.x; x += SK_WIDTH / 4u) {
                 const sk_u32 b = sk_number_at(dims, own.first.x + x, own.first.y + y, own.first.z + z);
                 const sk_u32 blocks = sk_min_u32(own.count.x - x, SK_WIDTH / 4u);
-                if (first < end) {
+                if (pairs != 0u) {
                     of_four = sk_count_lanes(counters + sk_cell_in_bin(4u * x, 4u * y, 4u * z));
                     longest_lists = sk_max_i(longest_lists, of_four.longest);
                 }
@@ -418,19 +419,19 @@ SK_FUNCTION sk_tally sk_tally_in_bin(SK_GLOBAL const sk_u32* counters) {
 }
 
 /** The records of a bin's blocks as sk_count_block() makes them, and which of them are not empty; how long the longest list is. */
-SK_FUNCTION sk_u32 sk_count_bin(sk_u32 bin, sk_u32 first, sk_u32 end, SetkaGridHeader grid, SK_GLOBAL const sk_u32* pairs,
-                                SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_block* counted, SK_GLOBAL sk_u64* filled) {
+SK_FUNCTION sk_u32 sk_count_bin(sk_u32 bin, SetkaGridHeader grid, sk_binned all, SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_block* counted,
+                                SK_GLOBAL sk_u64* filled) {
     const sk_dims dims = sk_block_dims(sk_cell_dims(grid));
     const sk_bin_blocks own = sk_blocks_of_bin(dims, sk_bin_dims(sk_cell_dims(grid)), bin);
     sk_u64 own_filled = 0u;
     sk_u32 longest = 0u;
-    if (first < end) sk_count_in_bin(first, end, pairs, counters);
+    const sk_u32 pairs = sk_count_in_bin(all, bin, counters);
     for (sk_u32 z = 0u; z < own.count.z; ++z)
         for (sk_u32 y = 0u; y < own.count.y; ++y)
             for (sk_u32 x = 0u; x < own.count.x; ++x) {
                 const sk_u32 b = sk_number_at(dims, own.first.x + x, own.first.y + y, own.first.z + z);
                 sk_tally tally = sk_no_tally();
-                if (first < end) tally = sk_tally_in_bin(counters + sk_cell_in_bin(4u * x, 4u * y, 4u * z));
+                if (pairs != 0u) tally = sk_tally_in_bin(counters + sk_cell_in_bin(4u * x, 4u * y, 4u * z));
                 if (tally.mask != 0u) own_filled |= (sk_u64)1 << sk_bit_in_block(x, y, z);
                 longest = sk_max_u32(longest, tally.longest);
                 counted[b] = sk_counted_block(tally);
@@ -445,16 +446,16 @@ SK_FUNCTION sk_u32 sk_count_bin(sk_u32 bin, sk_u32 first, sk_u32 end, SetkaGridH
  * The same for bins first, first + step, … below n. Of `blocks` records, those that the grid has no block for are empty ones, or all
  * if not all pairs are in bins or the grid has more blocks.
  */
-SK_FUNCTION void sk_tally_bins(sk_u32 first, sk_u32 n, sk_u32 step, sk_u32 capacity, sk_u32 blocks, SetkaGridHeader grid,
-                               SK_GLOBAL const sk_u32* starts, SK_GLOBAL const sk_u32* pairs, SK_GLOBAL sk_u32* counters,
-                               SK_GLOBAL sk_block* counted, SK_GLOBAL sk_u64* filled, SK_GLOBAL sk_u32* report) {
+SK_FUNCTION void sk_tally_bins(sk_u32 first, sk_u32 n, sk_u32 step, sk_u32 capacity, sk_u32 most_units, sk_u32 blocks, SetkaGridHeader grid,
+                               sk_binned all, SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_block* counted, SK_GLOBAL sk_u64* filled,
+                               SK_GLOBAL sk_u32* report) {
     const sk_u32 blocks_of_grid = sk_block_count(sk_block_dims(sk_cell_dims(grid)));
     const sk_u32 bins_of_grid = sk_block_count(sk_bin_dims(sk_cell_dims(grid)));
-    const int has_all = sk_is_binned(report, capacity) && blocks_of_grid <= blocks;
+    const int has_all = sk_is_binned(report, capacity, most_units) && blocks_of_grid <= blocks;
     const sk_u32 bins = has_all ? sk_min_u32(bins_of_grid, n) : 0u, of_grid = has_all ? blocks_of_grid : 0u;
     sk_u32 longest = 0u;
     for (sk_u32 b = first; b < bins; b += step)
-        longest = sk_max_u32(longest, sk_count_bin(b, starts[b], starts[b + 1u], grid, pairs, counters, counted, filled));
+        longest = sk_max_u32(longest, sk_count_bin(b, grid, all, counters, counted, filled));
     for (sk_u32 b = of_grid + first; b < blocks; b += step) counted[b] = sk_counted_block(sk_no_tally());
     if (longest > SK_LONG_LIST) (void)sk_atomic_max(report + SK_TOTAL_LONGEST, longest);
 }
@@ -515,9 +516,8 @@ SK_FUNCTION sk_u32 sk_clearance_in(sk_rings rings, sk_u32 bit) {
     return 15u - 4u * (sk_u32)((rings.near1 >> bit & 1u) + (rings.near2 >> bit & 1u) + (rings.near3 >> bit & 1u));
 }
 
-/** The lists of a bin: records of blocks and cells, and references. ends[r * bins + bin] is where the pairs of run r end. */
-SK_FUNCTION void sk_place_bin(sk_u32 bin, sk_u32 first, sk_u32 end, sk_u32 length, sk_u32 runs, sk_u32 bins, SK_GLOBAL const sk_u32* ends,
-                              SetkaGridHeader grid, SK_GLOBAL const sk_u32* pairs, SK_GLOBAL sk_u32* counters,
+/** The lists of a bin: records of blocks and cells, and references. */
+SK_FUNCTION void sk_place_bin(sk_u32 bin, SetkaGridHeader grid, sk_binned all, SK_GLOBAL sk_u32* counters,
                               SK_GLOBAL const sk_block* counted, SK_GLOBAL const sk_u64* filled, SK_GLOBAL sk_block* blocks,
                               SK_GLOBAL sk_cell_list* lists, SK_GLOBAL sk_u32* references) {
     const sk_dims dims = sk_block_dims(sk_cell_dims(grid)), bin_dims = sk_bin_dims(sk_cell_dims(grid));
@@ -525,7 +525,7 @@ SK_FUNCTION void sk_place_bin(sk_u32 bin, sk_u32 first, sk_u32 end, sk_u32 lengt
     const sk_rings rings = sk_rings_of(bin_dims, bin, filled);
     sk_await_blocks(dims, own, counted);
     sk_await_blocks(dims, own, blocks);
-    if (first < end) sk_count_in_bin(first, end, pairs, counters);
+    (void)sk_count_in_bin(all, bin, counters);
     for (sk_u32 z = 0u; z < own.count.z; ++z)
         for (sk_u32 y = 0u; y < own.count.y; ++y)
             for (sk_u32 x = 0u; x < own.count.x; ++x) {
@@ -550,15 +550,14 @@ SK_FUNCTION void sk_place_bin(sk_u32 bin, sk_u32 first, sk_u32 end, sk_u32 lengt
                 block.clearance = sk_mask_of(block) != 0u ? 0u : sk_clearance_in(rings, sk_bit_in_block(x, y, z));
                 blocks[b] = block;
             }
-    const sk_u32 in_span = sk_runs_in_span(length);
-    sk_u32 p = first;
-    for (sk_u32 r = 0u; p < end; r += in_span) {
-        const sk_u32 next = r + in_span, span = r * length, span_end = next < runs ? ends[(size_t)(next - 1u) * bins + bin] : end;
-        for (; p < span_end; ++p) {
-            SK_GLOBAL sk_u32* counter = counters + sk_cell_of_pair(pairs[p]);
+    for (sk_u32 r = 0u; r < all.runs; ++r) {
+        SK_GLOBAL const sk_u32* bounds = sk_bounds_in_bin(all, r, bin);
+        const sk_u32 end = bounds[1], before = r * all.length;
+        for (sk_u32 p = bounds[0]; p < end; ++p) {
+            SK_GLOBAL sk_u32* counter = counters + sk_cell_of_pair(all.pairs[p]);
             const sk_u32 place = *counter;
             *counter = place + 1u;
-            references[place] = span + pairs[p] % SK_SPAN;
+            references[place] = before + sk_triangle_of_pair(all.pairs[p]);
         }
     }
 }

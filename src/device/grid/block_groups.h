@@ -13,14 +13,6 @@
 /** Non-empty cells and pairs in one number, in this order: sums of sums too, since tables hold fewer than 2^32 of each. */
 SK_FUNCTION sk_u64 sk_packed_sums(sk_block_sums sums) { return (sums.cells << 32) + (sums.pairs & 0xffffffffu); }
 
-/** Adds to a total of two words. When two do so at once, each takes along the carry that it caused. */
-SK_FUNCTION void sk_add_to_total(SK_GLOBAL sk_u32* low, SK_GLOBAL sk_u32* high, sk_u64 value) {
-    const sk_u32 part = (sk_u32)value;
-    const sk_u32 before = sk_atomic_add(low, part);
-    const sk_u32 above = (sk_u32)(value >> 32) + (before + part < part ? 1u : 0u);
-    if (above != 0u) sk_atomic_add(high, above);
-}
-
 /** Counts the work-item's block, one of n. sums[group] = the group's cells and pairs; those of all groups go to `totals`. */
 SK_FUNCTION void sk_tally_blocks(SK_LOCAL sk_u64* scratch, SK_LOCAL sk_u64* pair_scratch, sk_u32 n, sk_u32 alone,
                                  SetkaGridHeader grid, SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_block* blocks,
@@ -44,7 +36,7 @@ SK_FUNCTION void sk_tally_blocks(SK_LOCAL sk_u64* scratch, SK_LOCAL sk_u64* pair
         sums[sk_group_id()] = sk_packed_sums(own);
         if (own.cells != 0u) {
             sk_atomic_add(totals + SK_TOTAL_CELLS, (sk_u32)own.cells);
-            sk_add_to_total(totals + SK_TOTAL_PAIRS_LOW, totals + SK_TOTAL_PAIRS_HIGH, own.pairs);
+            (void)sk_add_to_total(totals + SK_TOTAL_PAIRS_LOW, totals + SK_TOTAL_PAIRS_HIGH, own.pairs);
         }
     }
 }

@@ -53,6 +53,15 @@ SK_FUNCTION SetkaGridHeader sk_reported_grid(SK_GLOBAL const sk_u32* report) {
     return *(SK_GLOBAL const SetkaGridHeader*)(report + SK_REPORT_HEADER);
 }
 
+/** Adds to a total of two words; what the lower one was. When two do so at once, each takes along the carry that it caused. */
+SK_FUNCTION sk_u32 sk_add_to_total(SK_GLOBAL sk_u32* low, SK_GLOBAL sk_u32* high, sk_u64 value) {
+    const sk_u32 part = (sk_u32)value;
+    const sk_u32 before = sk_atomic_add(low, part);
+    const sk_u32 above = (sk_u32)(value >> 32) + (before + part < part ? 1u : 0u);
+    if (above != 0u) (void)sk_atomic_add(high, above);
+    return before;
+}
+
 SK_FUNCTION sk_u32 sk_number_at(sk_dims dims, sk_u32 x, sk_u32 y, sk_u32 z) { return (z * dims.y + y) * dims.x + x; }
 
 /** The block that holds a cell, and the cell's bit in it. */

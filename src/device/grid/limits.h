@@ -26,12 +26,11 @@
 /** Lists longer than this are copied by one work-item a reference, others by one a list. */
 #define SK_LONG_LIST 1024u
 
-/** Bins (bins.h): cells along each axis and in all; and so many bins have the places of their pairs found by one work-item. */
+/** Bins (bins.h): cells along each axis and in all. */
 #define SK_BIN_SIDE 16u
 #define SK_BIN_CELLS 4096u
-#define SK_BIN_PART 64u
 /** Triangles that a pair in a bin can tell apart, in the bits that a cell's number in its bin leaves. */
-#define SK_SPAN 1048576u
+#define SK_LONGEST_RUN 1048576u
 
 /**
  * What a build's kernels tell each other and the host, in one table of SK_REPORT words that are 0 at first: totals, what the transform found, and

@@ -471,7 +471,6 @@ SK_FUNCTION sk_u64 sk_find_reaches(sk_u32 first, sk_u32 end, SetkaGridHeader gri
         const int is_last = start + SK_WIDTH >= end;
         /* Line by line: what the next chunk reads, and what is written the time after next. */
         for (sk_u32 k = 0u; k < 9u * SK_WIDTH; k += 16u) sk_prefetch(triangles + ((size_t)(start + SK_CHUNK) * 9u + k));
-        for (sk_u32 k = 0u; k < SK_WIDTH; k += 4u) sk_prefetch(reaches + (start + 2u * SK_WIDTH + k));
         sk_store_reaches(boxes.words, count, reaches + start);
         if ((boxes.large & lanes) != 0u) units += sk_units_of(boxes.most, boxes.large & lanes);
         sk_let_wait(&flats, boxes.flats & lanes, numbers, boxes.xy, boxes.z);
