@@ -31,19 +31,20 @@ std::uint64_t usual_pairs(std::uint32_t triangles, float density) {
     return static_cast<std::uint64_t>(std::ceil(double(triangles) * (2 + 4 * side * side))) + 8192;
 }
 
-/// Runs long enough to be worth their bounds, short enough to stay in a core's cache, and so many that cores come out even; a work-item takes a
-/// sixteenth of what a core does of the bins, and an eighth of the runs, with counters and reaches that stay there too. Other devices may end a long
-/// loop early, or have very many work-items: there bins and short runs have one each.
+/// Runs long enough to be worth their bounds, short enough to stay in a core's cache, and so many that cores come out even. Few work-items share them,
+/// and groups of bins, with reaches and counters that stay there too, but more than cores: PoCL hands a core several at once. Other devices may end a
+/// long loop early, or have very many work-items: there bins and short runs have one each.
 BinRoom divided(const Device& device, std::uint32_t triangles, BinRoom room) {
-    constexpr std::uint32_t most_counters = 1u << 24, most_items = 256;
+    constexpr std::uint32_t most_counters = 1u << 24;
     const std::uint32_t shortest = prefers_bins(device) ? 2048 : 64;
-    const std::uint32_t shares = 16 * std::max(1u, device.info().compute_units);
-    const std::uint64_t runs = prefers_bins(device) ? std::max(64u, shares) : divide_up(triangles, shortest);
+    const std::uint32_t items = 4 * std::max(1u, device.info().compute_units);
+    const std::uint64_t runs = prefers_bins(device) ? std::max(64u, 4 * items) : divide_up(triangles, shortest);
     const std::uint64_t most_runs = std::clamp<std::uint64_t>(most_counters / room.bins, 1, runs);
     room.run = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(divide_up(triangles, most_runs), shortest, SK_LONGEST_RUN));
     room.runs = static_cast<std::uint32_t>(divide_up(triangles, room.run));
-    room.run_items = prefers_bins(device) ? std::min({room.runs, shares / 4, most_items}) : room.runs;
-    room.items = prefers_bins(device) ? std::min({room.bins, shares, most_items}) : room.bins;
+    room.run_items = prefers_bins(device) ? std::min(room.runs, items) : room.runs;
+    room.bin_items = prefers_bins(device) ? std::min(room.bins, items) : room.bins;
+    room.together = std::clamp(room.bins / (8 * room.bin_items), 1u, 16u);
     return room;
 }
 
@@ -76,7 +77,7 @@ std::uint64_t bounds_of(const BinRoom& room) { return room.runs * (room.bins + s
 /// The bytes that both filling and placing hold, world triangles not included.
 std::uint64_t kept_bytes(const Device& device, const BinRoom& room) {
     return report_bytes + block_sums_bytes(device, room.blocks) +
-           (bounds_of(room) + room.pairs + std::uint64_t(room.items) * SK_BIN_CELLS + 2 * std::uint64_t(room.bins) +
+           (bounds_of(room) + room.pairs + std::uint64_t(room.bin_items) * SK_BIN_CELLS + 2 * std::uint64_t(room.bins) +
             room.blocks * block_words) *
                word;
 }
@@ -89,20 +90,27 @@ std::uint64_t fill_bytes(const Device& device, const BinRoom& room) {
 /// Whether filling fits the budget beside the world's triangles, and each of its tables one allocation.
 bool fits_filling(const GridLimits& limits, const Device& device, const WorldGeometry& geometry, const BinRoom& room) {
     for (const std::uint64_t words : {std::uint64_t(room.pairs), reaches_of(room), room.blocks * block_words, bounds_of(room),
-                                      std::uint64_t(room.items) * SK_BIN_CELLS})
+                                      std::uint64_t(room.bin_items) * SK_BIN_CELLS})
         if (!limits.fits_an_allocation(words)) return false;
     return limits.fits(geometry.triangles.size_bytes() + fill_bytes(device, room));
 }
 
-/// Launches a kernel whose work-items take every `items`-th of n runs or bins, each of them a group of its own. Where a stop can be requested, some
-/// at a time.
+/// Launches a kernel whose work-items, each a group of its own, share n runs or groups of bins. Where a stop can be requested, some at a time.
 template <typename... Ts>
-void launch_strided(Queue& queue, Kernel kernel, std::uint32_t n, std::uint32_t items, const Ts&... arguments) {
+void launch_shared(Queue& queue, Kernel kernel, std::uint32_t n, std::uint32_t items, BinnedCount& count, const Ts&... arguments) {
     const std::uint32_t step = queue.impl().stop_token().stop_possible() ? 4 * items : n;
     for (std::uint32_t first = 0; first < n; first += std::min(step, n - first)) {
-        const std::uint32_t end = first + std::min(step, n - first), own = std::min(items, end - first);
-        launch_groups(queue, kernel, own, 1, end, first, own, arguments...);
+        const std::uint32_t end = first + std::min(step, n - first), before = count.taken - first;
+        launch_groups(queue, kernel, items, 1, end, items, before, count.room.run, count.room.bins, arguments...);
+        count.taken += end - first + items;
     }
+}
+
+/// The same for the first bins.
+template <typename... Ts>
+void launch_bins(Queue& queue, Kernel kernel, std::uint32_t bins, BinnedCount& count, const Ts&... arguments) {
+    const auto groups = static_cast<std::uint32_t>(divide_up(bins, count.room.together));
+    launch_shared(queue, kernel, groups, count.room.bin_items, count, arguments...);
 }
 
 /// Large triangles with so many cells at least, in units of SK_LONG_ROW, are not for bins: their rows are better spread over work-items of
@@ -119,14 +127,14 @@ BinnedCount enqueue_bins(Queue& queue, const WorldGeometry& geometry, const Buff
     count.reaches = queue.make_buffer<std::uint32_t>(reaches_of(room), "cells of small triangles");
     count.bounds = queue.make_buffer<std::uint32_t>(bounds_of(room), "bounds of pairs in bins");
     count.pairs = queue.make_buffer<std::uint32_t>(room.pairs, "pairs in bins");
-    launch_strided(queue, Kernel::bins_fill, room.runs, room.run_items, room.run, room.bins, room.pairs, most, geometry.triangles,
-                   count.reaches, count.bounds, count.pairs, report);
+    launch_shared(queue, Kernel::bins_fill, room.runs, room.run_items, count, room.pairs, most, geometry.triangles, count.reaches, count.bounds,
+                  count.pairs, report);
     queue.impl().begin_stage("blocks");
-    count.counters = queue.make_buffer<std::uint32_t>(std::uint64_t(room.items) * SK_BIN_CELLS, "counters of bins");
+    count.counters = queue.make_buffer<std::uint32_t>(std::uint64_t(room.bin_items) * SK_BIN_CELLS, "counters of bins");
     count.filled = queue.make_buffer<std::uint64_t>(room.bins, "filled blocks of bins");
     count.blocks = queue.make_buffer<std::uint32_t>(room.blocks * block_words, "counted blocks");
-    launch_strided(queue, Kernel::bins_tally, room.bins, room.items, room.run, room.runs, room.bins, room.pairs, most, room.blocks,
-                   count.bounds, count.pairs, count.counters, count.blocks, count.filled, report);
+    launch_bins(queue, Kernel::bins_tally, room.bins, count, room.pairs, most, room.runs, room.together, room.blocks, count.bounds, count.pairs,
+                count.counters, count.blocks, count.filled, report);
     count.block_sums = enqueue_block_sums(queue, count.blocks, report);
     return count;
 }
@@ -212,8 +220,8 @@ CompactTables build_binned(Queue& queue, const ::SetkaGridHeader& header, Binned
     tables.references = queue.make_buffer<std::uint32_t>(header.reference_count, "references");
     enqueue_block_starts(queue, count.block_sums, count.blocks);
     queue.impl().begin_stage("lists");
-    launch_strided(queue, Kernel::bins_place, bin_count(header), count.room.items, count.room.run, count.room.runs, count.room.bins, header,
-                   count.bounds, count.pairs, count.counters, count.blocks, count.filled, tables.blocks, tables.cells, tables.references);
+    launch_bins(queue, Kernel::bins_place, bin_count(header), count, count.room.runs, count.room.together, header, count.bounds, count.pairs,
+                count.counters, count.blocks, count.filled, tables.blocks, tables.cells, tables.references, count.report);
     tables.longest_list = count.longest_list;
     return tables;
 }

@@ -18,14 +18,16 @@ struct BinRoom {
     std::uint32_t pairs = 0;
     std::uint32_t run = 0;        ///< triangles in each run
     std::uint32_t runs = 0;
-    std::uint32_t run_items = 0;  ///< work-items that runs are spread over
-    std::uint32_t items = 0;      ///< the same of bins
+    std::uint32_t run_items = 0;  ///< work-items that share the runs
+    std::uint32_t bin_items = 0;  ///< the same for bins
+    std::uint32_t together = 0;   ///< bins that one of them takes at a time
 };
 
 /// What counting leaves for placing.
 struct BinnedCount {
     std::uint32_t cells = 0;  ///< that are not empty
     std::uint32_t longest_list = 0;
+    std::uint32_t taken = 0;  ///< by work-items of all launches so far, of what they share
     BinRoom room;
     Buffer<std::uint32_t> report;
     Buffer<std::uint32_t> reaches;   ///< of a run, for each work-item: 4 words a triangle

@@ -250,6 +250,20 @@ SK_FUNCTION void sk_fill_run(sk_u32 r, sk_u32 length, sk_u32 bins, sk_u32 capaci
     }
 }
 
+/**
+ * The next of what the work-items of a launch share: they take one after the other, since not all of it takes equally long, and what each has of its
+ * own stays in its cache. `before` is what earlier launches have taken, with one too many for each of their work-items.
+ */
+SK_FUNCTION sk_u32 sk_take_next(SK_GLOBAL sk_u32* report, sk_u32 before) { return sk_atomic_add(report + SK_TOTAL_TAKEN, 1u) - before; }
+
+/** Fills with the runs that the work-item gets, of those below n. */
+SK_FUNCTION void sk_fill_runs(sk_u32 n, sk_u32 before, sk_u32 length, sk_u32 bins, sk_u32 capacity, sk_u32 most_units, SetkaGridHeader grid,
+                              SK_GLOBAL const float* triangles, SK_GLOBAL sk_reach* reaches, SK_GLOBAL sk_u32* bounds,
+                              SK_GLOBAL sk_u32* pairs, SK_GLOBAL sk_u32* report) {
+    for (sk_u32 r = sk_take_next(report, before); r < n; r = sk_take_next(report, before))
+        sk_fill_run(r, length, bins, capacity, most_units, grid, triangles, reaches, bounds, pairs, report);
+}
+
 /** What all runs have left. */
 typedef struct sk_binned {
     SK_GLOBAL const sk_u32* bounds; /* of run r in bin b: from r * (bins + 1) + b on, up to the next one's */
@@ -443,20 +457,24 @@ SK_FUNCTION sk_u32 sk_count_bin(sk_u32 bin, SetkaGridHeader grid, sk_binned all,
 #endif
 
 /**
- * The same for bins first, first + step, … below n. Of `blocks` records, those that the grid has no block for are empty ones, or all
- * if not all pairs are in bins or the grid has more blocks.
+ * The same for the bins that the work-item gets, of n groups of `together` bins, whose bounds lie beside each other. Of `blocks` records, those that the
+ * grid has no block for are empty ones, or all if not all pairs are in bins or the grid has more blocks: each group has its share of them.
  */
-SK_FUNCTION void sk_tally_bins(sk_u32 first, sk_u32 n, sk_u32 step, sk_u32 capacity, sk_u32 most_units, sk_u32 blocks, SetkaGridHeader grid,
+SK_FUNCTION void sk_tally_bins(sk_u32 n, sk_u32 before, sk_u32 together, sk_u32 capacity, sk_u32 most_units, sk_u32 blocks, SetkaGridHeader grid,
                                sk_binned all, SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_block* counted, SK_GLOBAL sk_u64* filled,
                                SK_GLOBAL sk_u32* report) {
     const sk_u32 blocks_of_grid = sk_block_count(sk_block_dims(sk_cell_dims(grid)));
     const sk_u32 bins_of_grid = sk_block_count(sk_bin_dims(sk_cell_dims(grid)));
+    const sk_u32 groups = (all.bins + together - 1u) / together, share = (blocks + groups - 1u) / groups;
     const int has_all = sk_is_binned(report, capacity, most_units) && blocks_of_grid <= blocks;
-    const sk_u32 bins = has_all ? sk_min_u32(bins_of_grid, n) : 0u, of_grid = has_all ? blocks_of_grid : 0u;
+    const sk_u32 bins = has_all ? sk_min_u32(bins_of_grid, all.bins) : 0u, of_grid = has_all ? blocks_of_grid : 0u;
     sk_u32 longest = 0u;
-    for (sk_u32 b = first; b < bins; b += step)
-        longest = sk_max_u32(longest, sk_count_bin(b, grid, all, counters, counted, filled));
-    for (sk_u32 b = of_grid + first; b < blocks; b += step) counted[b] = sk_counted_block(sk_no_tally());
+    for (sk_u32 group = sk_take_next(report, before); group < n; group = sk_take_next(report, before)) {
+        for (sk_u32 b = group * together; b < sk_min_u32(group * together + together, bins); ++b)
+            longest = sk_max_u32(longest, sk_count_bin(b, grid, all, counters, counted, filled));
+        for (sk_u32 b = sk_max_u32(group * share, of_grid); b < sk_min_u32(group * share + share, blocks); ++b)
+            counted[b] = sk_counted_block(sk_no_tally());
+    }
     if (longest > SK_LONG_LIST) (void)sk_atomic_max(report + SK_TOTAL_LONGEST, longest);
 }
 
@@ -560,6 +578,16 @@ SK_FUNCTION void sk_place_bin(sk_u32 bin, SetkaGridHeader grid, sk_binned all, S
             references[place] = before + sk_triangle_of_pair(all.pairs[p]);
         }
     }
+}
+
+/** The same for the bins that the work-item gets, of n groups of `together` bins. */
+SK_FUNCTION void sk_place_bins(sk_u32 n, sk_u32 before, sk_u32 together, SetkaGridHeader grid, sk_binned all, SK_GLOBAL sk_u32* counters,
+                               SK_GLOBAL const sk_block* counted, SK_GLOBAL const sk_u64* filled, SK_GLOBAL sk_block* blocks,
+                               SK_GLOBAL sk_cell_list* lists, SK_GLOBAL sk_u32* references, SK_GLOBAL sk_u32* report) {
+    const sk_u32 bins = sk_block_count(sk_bin_dims(sk_cell_dims(grid)));
+    for (sk_u32 group = sk_take_next(report, before); group < n; group = sk_take_next(report, before))
+        for (sk_u32 b = group * together; b < sk_min_u32(group * together + together, bins); ++b)
+            sk_place_bin(b, grid, all, counters, counted, filled, blocks, lists, references);
 }
 
 #endif

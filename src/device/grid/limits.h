@@ -45,6 +45,7 @@
 #define SK_TOTAL_FOUND 6u      /* the same, of those counted so far */
 #define SK_TOTAL_PIECES 7u     /* of lists that are too long for one work-item */
 #define SK_TOTAL_CUT 8u        /* pieces cut so far */
+#define SK_TOTAL_TAKEN 4u      /* in builds with bins, which list no rows: what work-items have taken of runs and bins so far */
 #define SK_TOTAL_BINNED_LOW 7u /* pairs in bins: in builds with these, which cut no list into pieces */
 #define SK_TOTAL_BINNED_HIGH 8u
 #define SK_TOTALS 9u           /* so many words are totals */
