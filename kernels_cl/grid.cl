@@ -22,11 +22,11 @@ SK_KERNEL void grid_resolve(sk_u32 n, sk_u32 blocks, float density, sk_u32 max_c
 
 /* The same by the first work-item, while all n of them clear 4 n counters. */
 SK_KERNEL void grid_resolve_clear(sk_u32 n, sk_u32 blocks, float density, sk_u32 max_cells, sk_u32 triangle_count,
-                                  sk_u32 instance_count, SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_u32* report) {
+                                  sk_u32 instance_count, SK_GLOBAL sk_u32* working) {
     const sk_u32 i = sk_global_id();
-    if (i < n) sk_clear_counters(i, n, counters);
+    if (i < n) sk_clear_counters(i, n, sk_counters_of(working));
     if (i == 0u)
-        sk_grid_resolve(blocks, sk_make_cell_wish(density, max_cells, triangle_count, instance_count), report);
+        sk_grid_resolve(blocks, sk_make_cell_wish(density, max_cells, triangle_count, instance_count), working);
 }
 
 SK_KERNEL void grid_rows(sk_u32 n, SetkaGridHeader grid, SK_GLOBAL const float* triangles, SK_GLOBAL sk_u32* rows) {
@@ -77,7 +77,7 @@ SK_KERNEL void grid_cells_search(sk_u32 n, sk_u32 pair_count, SK_GLOBAL const sk
 
 SK_KERNEL void grid_mark(sk_u32 n, sk_u32 first, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
                          SK_GLOBAL const sk_u32* row_triangles, SK_GLOBAL const sk_u32* row_starts,
-                         SK_GLOBAL sk_u32* counters) {
+                         SK_GLOBAL sk_u32* working) {
     const sk_u32 r = first + sk_global_id();
-    if (r < n) sk_grid_mark(r, grid, triangles, row_triangles, row_starts, counters);
+    if (r < n) sk_grid_mark(r, grid, triangles, row_triangles, row_starts, sk_counters_of(working));
 }

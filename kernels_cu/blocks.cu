@@ -31,74 +31,70 @@ SK_KERNEL void blocks_apply(sk_u32 n, sk_u32 elements, sk_u32 groups, SK_GLOBAL 
 }
 
 /* Counts in the grid that the report names; n may be more than it has. */
-SK_KERNEL void blocks_count(sk_u32 n, sk_u32 alone, SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_block* blocks,
-                            SK_GLOBAL sk_u32* report) {
+SK_KERNEL void blocks_count(sk_u32 n, sk_u32 alone, SK_GLOBAL sk_u32* working, SK_GLOBAL sk_block* blocks) {
     const sk_u32 b = sk_global_id();
-    if (b < n) sk_count_block(b, alone, sk_reported_grid(report), counters, blocks, report);
+    if (b < n) sk_count_block(b, alone, sk_reported_grid(working), working, blocks);
 }
 
-SK_KERNEL void blocks_lay_out(sk_u32 n, sk_u32 alone, SetkaGridHeader grid, SK_GLOBAL sk_u32* counters,
+SK_KERNEL void blocks_lay_out(sk_u32 n, sk_u32 alone, SetkaGridHeader grid, SK_GLOBAL sk_u32* working,
                               SK_GLOBAL const sk_block* counted, SK_GLOBAL sk_block* blocks,
-                              SK_GLOBAL sk_cell_list* cells, SK_GLOBAL sk_piece* pieces, SK_GLOBAL sk_u32* totals) {
+                              SK_GLOBAL sk_cell_list* cells, SK_GLOBAL sk_piece* pieces) {
     const sk_u32 b = sk_global_id();
-    if (b < n) sk_lay_out_block(b, alone, grid, counters, counted[b], blocks, cells, pieces, totals);
+    if (b < n) sk_lay_out_block(b, alone, grid, working, counted[b], blocks, cells, pieces);
 }
 
 /* Both at once with what lies between them, a work-item a block; n of the first may be more than the grid has. */
-SK_KERNEL void blocks_tally(sk_u32 n, sk_u32 alone, SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_block* blocks,
-                            SK_GLOBAL sk_u64* sums, SK_GLOBAL sk_u32* report) {
+SK_KERNEL void blocks_tally(sk_u32 n, sk_u32 alone, sk_u32 blocks_at, sk_u32 sums_at, SK_GLOBAL sk_u32* working) {
     SK_LOCAL_STORAGE sk_u64 scratch[SK_MAX_GROUP];
     SK_LOCAL_STORAGE sk_u64 pair_scratch[SK_MAX_GROUP];
-    sk_tally_blocks(scratch, pair_scratch, n, alone, sk_reported_grid(report), counters, blocks, sums, report);
+    sk_tally_blocks(scratch, pair_scratch, n, alone, blocks_at, sums_at, working);
 }
 
-SK_KERNEL void blocks_settle(sk_u32 n, sk_u32 alone, SetkaGridHeader grid, SK_GLOBAL sk_u32* counters,
-                             SK_GLOBAL const sk_block* counted, SK_GLOBAL const sk_u64* sums,
-                             SK_GLOBAL sk_block* blocks, SK_GLOBAL sk_cell_list* cells, SK_GLOBAL sk_piece* pieces,
-                             SK_GLOBAL sk_u32* totals) {
+SK_KERNEL void blocks_settle(sk_u32 n, sk_u32 alone, SetkaGridHeader grid, sk_u32 blocks_at, sk_u32 sums_at,
+                             SK_GLOBAL sk_u32* working, SK_GLOBAL sk_block* blocks, SK_GLOBAL sk_cell_list* cells,
+                             SK_GLOBAL sk_piece* pieces) {
     SK_LOCAL_STORAGE sk_u64 scratch[2 * SK_MAX_GROUP];
     SK_LOCAL_STORAGE sk_u64 own_scratch[2 * SK_MAX_GROUP];
-    sk_settle_blocks(scratch, own_scratch, n, alone, grid, counters, counted, sums, blocks, cells, pieces, totals);
+    sk_settle_blocks(scratch, own_scratch, n, alone, grid, blocks_at, sums_at, working, blocks, cells, pieces);
 }
 
 /* A work-item for each `run` triangles of the grid that the report names, elements first to n - 1. */
-SK_KERNEL void scatter_count(sk_u32 n, sk_u32 first, sk_u32 run, SK_GLOBAL const float* triangles,
-                             SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_reach* reaches, sk_u32 capacity,
-                             SK_GLOBAL sk_u32* rows, SK_GLOBAL sk_u32* report) {
+SK_KERNEL void scatter_count(sk_u32 n, sk_u32 first, sk_u32 run, sk_u32 rows_at, sk_u32 capacity,
+                             SK_GLOBAL const float* triangles, SK_GLOBAL sk_u32* working,
+                             SK_GLOBAL sk_reach* reaches) {
     const sk_u32 i = first + sk_global_id();
-    const SetkaGridHeader grid = sk_reported_grid(report);
+    const SetkaGridHeader grid = sk_reported_grid(working);
     if (i < n)
         sk_count_triangles(i * run, sk_min_u32(i * run + run, grid.triangle_count), grid,
-                           sk_make_scatter(triangles, counters, (SK_GLOBAL sk_u32*)0), reaches,
-                           sk_make_row_list(rows, report, capacity));
+                           sk_make_scatter(triangles, working, (SK_GLOBAL sk_u32*)0), reaches,
+                           sk_make_row_list(working, rows_at, capacity));
 }
 
 /* A work-item a triangle. */
 SK_KERNEL void scatter_place(sk_u32 n, sk_u32 first, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
-                             SK_GLOBAL sk_u32* counters, SK_GLOBAL const sk_reach* reaches,
+                             SK_GLOBAL sk_u32* working, SK_GLOBAL const sk_reach* reaches,
                              SK_GLOBAL sk_u32* references) {
     const sk_u32 i = first + sk_global_id();
-    if (i < n) sk_place_triangle(i, grid, sk_make_scatter(triangles, counters, references), reaches);
+    if (i < n) sk_place_triangle(i, grid, sk_make_scatter(triangles, working, references), reaches);
 }
 
 /* A work-item for every step-th row of large triangles, elements first to n - 1. */
-SK_KERNEL void scatter_count_rows(sk_u32 n, sk_u32 first, sk_u32 step, SK_GLOBAL const float* triangles,
-                                  SK_GLOBAL sk_u32* counters, sk_u32 capacity, SK_GLOBAL sk_u32* rows,
-                                  SK_GLOBAL sk_u32* report) {
+SK_KERNEL void scatter_count_rows(sk_u32 n, sk_u32 first, sk_u32 step, sk_u32 rows_at, sk_u32 capacity,
+                                  SK_GLOBAL const float* triangles, SK_GLOBAL sk_u32* working) {
     const sk_u32 r = first + sk_global_id();
     if (r < n)
-        sk_take_listed(r, step, sk_reported_grid(report),
-                       sk_make_scatter(triangles, counters, (SK_GLOBAL sk_u32*)0),
-                       sk_make_row_list(rows, report, capacity), 0);
+        sk_take_listed(r, step, sk_reported_grid(working),
+                       sk_make_scatter(triangles, working, (SK_GLOBAL sk_u32*)0),
+                       sk_make_row_list(working, rows_at, capacity), 0);
 }
 
-SK_KERNEL void scatter_place_rows(sk_u32 n, sk_u32 first, sk_u32 step, SetkaGridHeader grid,
-                                  SK_GLOBAL const float* triangles, SK_GLOBAL sk_u32* counters, sk_u32 capacity,
-                                  SK_GLOBAL sk_u32* rows, SK_GLOBAL sk_u32* totals, SK_GLOBAL sk_u32* references) {
+SK_KERNEL void scatter_place_rows(sk_u32 n, sk_u32 first, sk_u32 step, sk_u32 rows_at, sk_u32 capacity,
+                                  SetkaGridHeader grid, SK_GLOBAL const float* triangles, SK_GLOBAL sk_u32* working,
+                                  SK_GLOBAL sk_u32* references) {
     const sk_u32 r = first + sk_global_id();
     if (r < n)
-        sk_take_listed(r, step, grid, sk_make_scatter(triangles, counters, references),
-                       sk_make_row_list(rows, totals, capacity), 1);
+        sk_take_listed(r, step, grid, sk_make_scatter(triangles, working, references),
+                       sk_make_row_list(working, rows_at, capacity), 1);
 }
 
 /* A work-item a list. */

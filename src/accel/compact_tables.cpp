@@ -57,16 +57,16 @@ std::uint64_t counter_count(const std::uint32_t (&dims)[3]) noexcept {
     return std::uint64_t(in_fours(dims[0])) * in_fours(dims[1]) * in_fours(dims[2]) * SK_BLOCK_CELLS + mark_count(dims);
 }
 
-Buffer<std::uint32_t> make_counters(Queue& queue, std::uint64_t words) {
-    auto counters = queue.make_buffer<std::uint32_t>(words, "cell counters and marks");
-    queue.impl().fill(*counters.memory(), 0, counters.size_bytes());
-    return counters;
-}
-
 Buffer<std::uint32_t> make_report(Queue& queue) {
     auto report = queue.make_buffer<std::uint32_t>(SK_REPORT, "report of the build");
     queue.impl().fill(*report.memory(), 0, report.size_bytes());
     return report;
+}
+
+Buffer<std::uint32_t> make_working_memory(Queue& queue, std::uint64_t words, std::uint64_t zeros) {
+    auto working = queue.make_buffer<std::uint32_t>(words, "working memory of the build");
+    queue.impl().fill(*working.memory(), 0, zeros * sizeof(std::uint32_t));
+    return working;
 }
 
 void report_header(Queue& queue, const Buffer<std::uint32_t>& report, const ::SetkaGridHeader& header) {

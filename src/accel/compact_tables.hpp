@@ -18,9 +18,6 @@ namespace setka {
 [[nodiscard]] std::uint64_t counter_count(const std::uint32_t (&dims)[3]) noexcept;
 /// Of the marks alone.
 [[nodiscard]] std::uint32_t mark_count(const std::uint32_t (&dims)[3]) noexcept;
-/// So many counters and marks, all 0.
-[[nodiscard]] Buffer<std::uint32_t> make_counters(Queue& queue, std::uint64_t words);
-
 /// Words of a block's and a cell's record.
 inline constexpr std::uint64_t block_words = 4, cell_words = 2;
 
@@ -39,6 +36,8 @@ struct BlockTotals {
 /// Words of kernels to each other and the host, all 0: device/grid/limits.h.
 [[nodiscard]] Buffer<std::uint32_t> make_report(Queue& queue);
 inline constexpr std::uint64_t report_bytes = SK_REPORT * sizeof(std::uint32_t);
+/// So many words of which the first are a report, and those behind it counters and marks (device/grid/blocks.h). The first `zeros` are 0.
+[[nodiscard]] Buffer<std::uint32_t> make_working_memory(Queue& queue, std::uint64_t words, std::uint64_t zeros);
 /// From here on kernels count in this grid, and totals are 0.
 void report_header(Queue& queue, const Buffer<std::uint32_t>& report, const ::SetkaGridHeader& header);
 

@@ -131,18 +131,18 @@ class UniformGridBuilder final : public GridBuilder {
 
     /// What start() does, but for the report.
     [[nodiscard]] StartedGrid begin(Queue& queue, const DeviceScene& scene) const {
+        scene.check_committed();  // how many triangles it has is asked first
         const GridLimits limits(queue.device(), options_);
         StartedGrid started;
-        started.start_ = std::make_shared<GridStart>(
-            GridStart{&queue.impl(), options_.cell_tables, start_transform(queue, scene), {}, {}, {}});
+        started.start_ =
+            std::make_shared<GridStart>(GridStart{&queue.impl(), options_.cell_tables, {}, {}, {}, {}});
         GridStart& start = *started.start_;
         const CellTables method = method_on(queue.device());
-        if (method == CellTables::Bins) {
-            start.bins = start_bins(queue, start.transform, options_, limits);
-            start.count.report = start.transform.report;
-        }
         if (method == CellTables::Scatter)
-            start.count = start_count(queue, start.transform, options_, limits);
+            start.count = make_room(queue, scene.triangle_count(), options_, limits);
+        start.transform = start_transform(queue, scene, report_in(start.count));
+        if (method == CellTables::Bins) start.bins = start_bins(queue, start.transform, options_, limits);
+        if (start.count.room.blocks != 0) start_count(queue, start.transform.geometry, options_, start.count);
         return started;
     }
 

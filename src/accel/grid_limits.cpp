@@ -26,12 +26,12 @@ GridLimits::GridLimits(const Device& device, const GridOptions& options, std::ui
     : device_(device), options_(options), held_before_bytes_(device.memory_in_use_bytes() - own_bytes) {}
 
 void GridLimits::check_cells(const GridResolution& resolution) const {
-    const std::uint64_t cells = resolution.cell_count(), slots = counter_count(resolution.dims);
+    const std::uint64_t cells = resolution.cell_count(), words = SK_REPORT + counter_count(resolution.dims);
     const std::uint64_t budget = device_.options().memory_budget_bytes;
-    const std::uint64_t most_slots = std::min(budget, device_.info().max_allocation_bytes) / word;
-    if (cells <= most_entries && slots <= most_slots) return;
-    const double share = double(cells) / double(slots);
-    const auto limit = std::min(most_entries, static_cast<std::uint64_t>(share * double(most_slots)));
+    const std::uint64_t most_words = std::min(budget, device_.info().max_allocation_bytes) / word;
+    if (cells <= most_entries && words <= most_words) return;
+    const double share = double(cells) / double(words);
+    const auto limit = std::min(most_entries, static_cast<std::uint64_t>(share * double(most_words)));
     throw Error(ErrorCategory::OutOfMemory,
                 "density " + std::to_string(options_.density) + " needs " + std::to_string(cells) +
                     " cells; the memory budget of " + bytes_text(budget) + " and " + device_.info().name +

@@ -15,7 +15,7 @@ namespace setka {
 namespace {
 
 constexpr std::uint64_t word = sizeof(std::uint32_t);
-constexpr std::uint64_t reach_words = 4, row_words = 2, piece_words = 4;
+constexpr std::uint64_t world_words = 9, reach_words = 4, row_words = 2, piece_words = 4;
 
 /// The longest list that one work-item puts in order: some ten thousand steps on drivers that end loops early
 /// (algo/shape.hpp).
@@ -50,70 +50,80 @@ std::uint32_t block_groups(const Device& device, std::uint32_t blocks) {
     return device.options().primitives == PrimitiveShape::Serial || groups > most ? 0 : groups;
 }
 
-std::uint64_t sums_bytes(const Device& device, std::uint32_t blocks) {
-    const std::uint32_t groups = block_groups(device, blocks);
-    return groups != 0 ? groups * std::uint64_t(sizeof(std::uint64_t)) : block_sums_bytes(device, blocks);
-}
-
 /// Whether the counters are cleared by the launch in which the first work-item finds the resolution, while the rest of a GPU has nothing else to do.
 bool clears_beside(const Device& device) { return device.options().primitives != PrimitiveShape::Serial; }
 
 /// Rows of large triangles that are provided for before any is seen: one a triangle, and those of some giants.
 std::uint32_t usual_rows(std::uint32_t triangles) { return triangles + 8192; }
 
+/// Where what begins in the working memory, in units of four words, so that vectors can be read. Kernels know where the counters are.
+struct Parts {
+    std::uint32_t blocks, sums, rows;
+    std::uint64_t words;  ///< in all
+    explicit Parts(const CountRoom& room)
+        : blocks(static_cast<std::uint32_t>((SK_REPORT + room.counters) / 4)),
+          sums(blocks + (room.groups != 0 ? room.blocks : 0)),
+          rows(sums + room.groups / 2 + room.groups % 2),
+          words(4 * std::uint64_t(rows) + room.rows * row_words) {}
+};
+static_assert(SK_REPORT % 4 == 0 && block_words == 4);
+
+CountRoom room_with(const Device& device, std::uint32_t rows, std::uint32_t blocks, std::uint64_t counters) {
+    return {rows, blocks, block_groups(device, blocks), (counters + 3) / 4 * 4};
+}
+
 /// Room for this grid.
-CountRoom room_of(const ::SetkaGridHeader& header, std::uint32_t rows) {
-    return {rows, block_count(header), counter_count(header.dims)};
+CountRoom room_of(const Device& device, const ::SetkaGridHeader& header, std::uint32_t rows) {
+    return room_with(device, rows, block_count(header), counter_count(header.dims));
 }
 
 /// Room for the grid of a usual scene with so many triangles, or for none. Blocks at the sides reach beyond the cells, by up to four cells
 /// along each axis: 20 times a side of a cube of the cells is enough for boxes with sides of 1 : 1 : 1/8. A quarter more lets
 /// flat ones fit that are large. No scene needs more than the most cells along each axis.
-CountRoom usual_room(std::uint32_t triangles, const GridOptions& options) {
+CountRoom usual_room(const Device& device, std::uint32_t triangles, const GridOptions& options) {
     const double cells = double(options.density) * triangles, side = exact::root(cells, 3);
     const double axis = (options.max_cells_per_axis + 3) / 4, most = axis * axis * axis;  // NOLINT: whole blocks
     const double blocks = std::min(std::ceil((1.25 * cells + 20 * side * side + 4096) / SK_BLOCK_CELLS), most);
     if (blocks * SK_BLOCK_CELLS > double(most_entries)) return {};
     const auto whole = static_cast<std::uint32_t>(blocks);
     const std::uint64_t counters = whole * std::uint64_t(SK_BLOCK_CELLS + 1);  // a mark's word a block at most
-    return {usual_rows(triangles), whole, (counters + 3) / 4 * 4};
+    return room_with(device, usual_rows(triangles), whole, counters);
 }
 
 /// The bytes that counting holds, world triangles not included.
 std::uint64_t count_bytes(const Device& device, std::uint32_t triangles, const CountRoom& room) {
-    return report_bytes +
-           (room.counters + room.blocks * block_words + triangles * reach_words + room.rows * row_words) * word +
-           sums_bytes(device, room.blocks);
+    const std::uint64_t of_scan =
+        room.groups == 0 ? room.blocks * block_words * word + block_sums_bytes(device, room.blocks) : 0;
+    return (Parts(room).words + triangles * reach_words) * word + of_scan;
 }
 
-/// Counts every triangle in its cells of the grid in the report, and the blocks' cells and pairs. `counters` are 0.
-ScatteredCount enqueue_count(Queue& queue, const WorldGeometry& geometry, const Buffer<std::uint32_t>& report,
-                             const CountRoom& room, Buffer<std::uint32_t> counters, std::uint64_t most_rows) {
+/// Whether counting fits the budget beside the world's triangles, and the working memory one allocation.
+bool fits_counting(const GridLimits& limits, const Device& device, std::uint32_t triangles, const CountRoom& room) {
+    return limits.fits_an_allocation(Parts(room).words) &&
+           limits.fits(triangles * world_words * word + count_bytes(device, triangles, room));
+}
+
+/// Counts every triangle in its cells of the grid in the report, and the blocks' cells and pairs. Counters are 0.
+void enqueue_count(Queue& queue, const WorldGeometry& geometry, ScatteredCount& count, std::uint64_t most_rows) {
+    const CountRoom& room = count.room;
+    const Parts at(room);
     const std::uint32_t n = geometry.triangle_count, items = row_items(queue.device(), room.rows);
-    ScatteredCount count;
-    count.room = room;
-    count.report = report;
     queue.impl().begin_stage("count");
-    count.blocks = queue.make_buffer<std::uint32_t>(room.blocks * block_words, "counted blocks");
     count.reaches = queue.make_buffer<std::uint32_t>(n * reach_words, "cells of small triangles");
-    count.row_list = queue.make_buffer<std::uint32_t>(room.rows * row_words, "rows of large triangles");
-    count.counters = std::move(counters);
     const std::uint32_t run = triangles_an_item(queue.device());
     launch_range(queue, Kernel::scatter_count, (n + run - 1) / run, triangles_a_launch(queue.device()) / run, run,
-                 geometry.triangles, count.counters, count.reaches, room.rows, count.row_list, report);
-    launch_range(queue, Kernel::scatter_count_rows, items, most_rows / 16, items, geometry.triangles, count.counters,
-                 room.rows, count.row_list, report);
+                 at.rows, room.rows, geometry.triangles, count.working, count.reaches);
+    launch_range(queue, Kernel::scatter_count_rows, items, most_rows / 16, items, at.rows, room.rows, geometry.triangles,
+                 count.working);
     queue.impl().begin_stage("blocks");
-    if (const std::uint32_t groups = block_groups(queue.device(), room.blocks); groups != 0) {
-        count.sums = queue.make_buffer<std::uint64_t>(groups, "sums of groups of blocks");
-        launch_items(queue, Kernel::blocks_tally, room.blocks, longest_alone(queue.device()), count.counters, count.blocks,
-                     count.sums, report);
-        return count;
+    const std::uint32_t alone = longest_alone(queue.device());
+    if (room.groups != 0) {
+        launch_items(queue, Kernel::blocks_tally, room.blocks, alone, at.blocks, at.sums, count.working);
+    } else {
+        count.blocks = queue.make_buffer<std::uint32_t>(room.blocks * block_words, "counted blocks");
+        launch_items(queue, Kernel::blocks_count, room.blocks, alone, count.working, count.blocks);
+        count.sums = enqueue_block_sums(queue, count.blocks, count.working);
     }
-    launch_items(queue, Kernel::blocks_count, room.blocks, longest_alone(queue.device()), count.counters,
-                 count.blocks, report);
-    count.sums = enqueue_block_sums(queue, count.blocks, report);
-    return count;
 }
 
 /// Puts lists in order that are cut into pieces: these first, then runs of two, four, ….
@@ -140,30 +150,31 @@ void ScatteredCount::learn(const BlockTotals& totals) noexcept {
     pieces = totals.pieces;
 }
 
-ScatteredCount start_count(Queue& queue, const StartedTransform& transform, const GridOptions& options,
-                           const GridLimits& limits) {
+ScatteredCount make_room(Queue& queue, std::uint32_t triangles, const GridOptions& options, const GridLimits& limits) {
     const Device& device = queue.device();
-    const WorldGeometry& geometry = transform.geometry;
-    const std::uint32_t n = geometry.triangle_count;
-    const CountRoom room = usual_room(n, options);
+    const CountRoom room = usual_room(device, triangles, options);
+    ScatteredCount count;
     if (!device.impl()->has_doubles() || queue.stop_token().stop_possible() || room.blocks == 0 ||
-        !limits.fits_an_allocation(room.counters) ||
-        !limits.fits(geometry.triangles.size_bytes() + count_bytes(device, n, room))) {
-        ScatteredCount nothing;
-        nothing.report = transform.report;
-        return nothing;
-    }
-    Buffer<std::uint32_t> counters;
-    if (clears_beside(device)) {
-        counters = queue.make_buffer<std::uint32_t>(room.counters, "cell counters and marks");
-        launch_items(queue, Kernel::grid_resolve_clear, static_cast<std::uint32_t>(room.counters / 4), room.blocks,
-                     options.density, options.max_cells_per_axis, n, geometry.instance_count, counters, transform.report);
-    } else {
-        launch_items(queue, Kernel::grid_resolve, 1, room.blocks, options.density, options.max_cells_per_axis, n,
-                     geometry.instance_count, transform.report);
-        counters = make_counters(queue, room.counters);
-    }
-    return enqueue_count(queue, geometry, transform.report, room, std::move(counters), most_entries);
+        !fits_counting(limits, device, triangles, room))
+        return count;
+    count.room = room;
+    count.working = make_working_memory(queue, Parts(room).words,
+                                        clears_beside(device) ? SK_REPORT : SK_REPORT + room.counters);
+    return count;
+}
+
+Buffer<std::uint32_t> report_in(const ScatteredCount& count) {
+    if (count.working.empty()) return {};
+    return {count.working.memory(), SK_REPORT};
+}
+
+void start_count(Queue& queue, const WorldGeometry& geometry, const GridOptions& options, ScatteredCount& count) {
+    const CountRoom& room = count.room;
+    const bool clears = clears_beside(queue.device());
+    launch_items(queue, clears ? Kernel::grid_resolve_clear : Kernel::grid_resolve,
+                 clears ? static_cast<std::uint32_t>(room.counters / 4) : 1, room.blocks, options.density,
+                 options.max_cells_per_axis, geometry.triangle_count, geometry.instance_count, count.working);
+    enqueue_count(queue, geometry, count, most_entries);
 }
 
 std::optional<ScatteredCount> finish_count(Queue& queue, const WorldGeometry& geometry, ::SetkaGridHeader& header,
@@ -173,18 +184,18 @@ std::optional<ScatteredCount> finish_count(Queue& queue, const WorldGeometry& ge
     const std::uint32_t n = header.triangle_count;
     const std::uint64_t world = geometry.triangles.size_bytes();
     const auto fits = [&](std::uint32_t rows) {
-        return limits.fits(world + count_bytes(device, n, room_of(header, rows)));
+        return fits_counting(limits, device, n, room_of(device, header, rows));
     };
     ScatteredCount count = std::move(started);
     BlockTotals totals = totals_of(words);
     const auto count_again = [&](std::uint32_t rows) {
-        const Buffer<std::uint32_t> report = std::exchange(count, {}).report;
-        const CountRoom room = room_of(header, rows);
+        count = {};
+        const CountRoom& room = count.room = room_of(device, header, rows);
         held_bytes = std::max(held_bytes, count_bytes(device, n, room));
-        report_header(queue, report, header);
-        count = enqueue_count(queue, geometry, report, room, make_counters(queue, room.counters),
-                              rows_a_launch(device, header.dims));
-        totals = totals_of(read_report(queue, report));
+        count.working = make_working_memory(queue, Parts(room).words, SK_REPORT + room.counters);
+        report_header(queue, count.working, header);
+        enqueue_count(queue, geometry, count, rows_a_launch(device, header.dims));
+        totals = totals_of(read_report(queue, count.working));
     };
     if (count.room.blocks != 0) held_bytes = count_bytes(device, n, count.room);
     if (count.room.blocks < block_count(header) || !has_header(words, header)) {
@@ -193,7 +204,6 @@ std::optional<ScatteredCount> finish_count(Queue& queue, const WorldGeometry& ge
     }
     const auto is_hopeless = [&] {
         return totals.rows >= SK_MOST_ROWS || totals.long_rows >= SK_MOST_LONG_ROWS ||
-               totals.rows * row_words * word > device.info().max_allocation_bytes ||
                (device.options().primitives == PrimitiveShape::Serial &&
                 totals.longest_list / SK_PIECE > most_pieces) ||
                !fits(std::max(totals.rows, usual_rows(n)));
@@ -230,24 +240,24 @@ CompactTables build_scattered(Queue& queue, const WorldGeometry& geometry, const
     queue.impl().begin_stage("blocks");
     tables.cells = queue.make_buffer<std::uint32_t>(count.cells * cell_words, "cells");
     const std::uint32_t alone = longest_alone(queue.device());
-    const bool is_tallied = block_groups(queue.device(), count.room.blocks) != 0;
+    const Parts at(count.room);
+    const bool is_tallied = count.room.groups != 0;
     if (!is_tallied) enqueue_block_starts(queue, count.sums, count.blocks);
     tables.blocks = queue.make_buffer<std::uint32_t>(block_count(header) * block_words, "blocks");
     const auto pieces = queue.make_buffer<std::uint32_t>(count.pieces * piece_words, "pieces of lists");
     if (is_tallied)
-        launch_items(queue, Kernel::blocks_settle, block_count(header), alone, header, count.counters, count.blocks,
-                     count.sums, tables.blocks, tables.cells, pieces, count.report);
+        launch_items(queue, Kernel::blocks_settle, block_count(header), alone, header, at.blocks, at.sums,
+                     count.working, tables.blocks, tables.cells, pieces);
     else
-        launch_items(queue, Kernel::blocks_lay_out, block_count(header), alone, header, count.counters, count.blocks,
-                     tables.blocks, tables.cells, pieces, count.report);
+        launch_items(queue, Kernel::blocks_lay_out, block_count(header), alone, header, count.working, count.blocks,
+                     tables.blocks, tables.cells, pieces);
     queue.impl().begin_stage("place");
     tables.references = queue.make_buffer<std::uint32_t>(header.reference_count, "references");
     launch_range(queue, Kernel::scatter_place, header.triangle_count, triangles_a_launch(queue.device()), header,
-                 geometry.triangles, count.counters, count.reaches, tables.references);
+                 geometry.triangles, count.working, count.reaches, tables.references);
     const std::uint32_t items = std::min(row_items(queue.device(), count.room.rows), count.rows);
     launch_range(queue, Kernel::scatter_place_rows, items, rows_a_launch(queue.device(), header.dims) / 16, items,
-                 header, geometry.triangles, count.counters, count.room.rows, count.row_list, count.report,
-                 tables.references);
+                 at.rows, count.room.rows, header, geometry.triangles, count.working, tables.references);
     queue.impl().begin_stage("sort");
     launch_items(queue, Kernel::lists_sort, count.cells, alone, tables.cells, tables.references);
     sort_pieces(queue, count, pieces, tables.references);

@@ -14,7 +14,8 @@ namespace setka {
 struct CountRoom {
     std::uint32_t rows = 0;  ///< of large triangles
     std::uint32_t blocks = 0;
-    std::uint64_t counters = 0;  ///< words, with the blocks' marks
+    std::uint32_t groups = 0;    ///< in which blocks are counted and laid out, or 0: then a scan in launches of its own does that
+    std::uint64_t counters = 0;  ///< words, with the blocks' marks; a multiple of four
 };
 
 /// What counting leaves for placing.
@@ -24,30 +25,35 @@ struct ScatteredCount {
     std::uint32_t longest_list = 0;
     std::uint32_t pieces = 0;  ///< of long lists
     CountRoom room;
-    Buffer<std::uint32_t> report;
-    Buffer<std::uint32_t> counters;  ///< 64 a block
-    Buffer<std::uint32_t> reaches;   ///< 4 words a triangle
-    Buffer<std::uint32_t> row_list;  ///< 2 words a row
-    Buffer<std::uint32_t> blocks;    ///< counted ones; a grid's own are made of them
-    Buffer<std::uint64_t> sums;
+    /// Report, counters, rows of large triangles and, where there are groups, counted blocks and the groups' sums.
+    Buffer<std::uint32_t> working;
+    Buffer<std::uint32_t> reaches;  ///< 4 words a triangle: on their own, so that one allocation need not hold them too
+    Buffer<std::uint32_t> blocks;   ///< counted ones where there are no groups; a grid's own are made of them
+    Buffer<std::uint64_t> sums;     ///< of their scan
 
     void learn(const BlockTotals& totals) noexcept;
 };
 
-/// Enqueues the resolution and the count on the device, with room for as many blocks as scenes usually need. Has no room, and counts
-/// nothing, if that would not fit, if the device cannot tell the resolution, or if each launch is waited for anyway.
-[[nodiscard]] ScatteredCount start_count(Queue& queue, const StartedTransform& transform, const GridOptions& options,
-                                         const GridLimits& limits);
+/// Room for as many blocks as scenes of so many triangles usually need, with working memory in which the report is 0. There is none if that would
+/// not fit, if the device cannot tell the resolution, or if each launch is waited for anyway: then nothing is counted before the bounds are known.
+[[nodiscard]] ScatteredCount make_room(Queue& queue, std::uint32_t triangles, const GridOptions& options,
+                                       const GridLimits& limits);
+
+/// The report in the working memory; empty if there was no room.
+[[nodiscard]] Buffer<std::uint32_t> report_in(const ScatteredCount& count);
+
+/// Enqueues the resolution and the count on the device, in the room that there is. The transform has written its report there.
+void start_count(Queue& queue, const WorldGeometry& geometry, const GridOptions& options, ScatteredCount& count);
 
 /// Finds out how many pairs there are, which the header learns. Waits, unless what was started has counted in this very grid, as
-/// `words` of the report say. Nothing if this is no way to the grid: if large triangles have too many rows to be listed. `held_bytes` becomes
-/// the most bytes that counting held, world triangles not included.
+/// `words` of the report say. Nothing if this is no way to the grid: if large triangles have too many rows to be listed, or if the working memory
+/// would not fit one allocation. `held_bytes` becomes the most bytes that counting held, world triangles not included.
 [[nodiscard]] std::optional<ScatteredCount> finish_count(Queue& queue, const WorldGeometry& geometry,
                                                          ::SetkaGridHeader& header, const GridLimits& limits,
                                                          ScatteredCount started, const Report& words,
                                                          std::uint64_t& held_bytes);
 
-/// The bytes that start_count() holds, the report included, world triangles not.
+/// The bytes that start_count() holds, or the report if there was no room; world triangles not included.
 [[nodiscard]] std::uint64_t started_bytes(const Device& device, std::uint32_t triangles, const ScatteredCount& started);
 
 /// The bytes that build_scattered() holds, tables included, world triangles not.

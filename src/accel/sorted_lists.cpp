@@ -71,16 +71,16 @@ void count_pairs(Queue& queue, const WorldGeometry& geometry, ::SetkaGridHeader&
 void count_cells(Queue& queue, const WorldGeometry& geometry, const ::SetkaGridHeader& header,
                  SortedCount& count) {
     const std::uint32_t n = block_count(header);
-    const auto counters = make_counters(queue, counter_count(header.dims));
+    const std::uint64_t words = SK_REPORT + counter_count(header.dims);
+    const auto working = make_working_memory(queue, words, words);
     launch_range(queue, Kernel::grid_mark, static_cast<std::uint32_t>(count.rows),
                  rows_a_launch(queue.device(), header.dims), header, geometry.triangles, count.row_triangles,
-                 count.row_starts, counters);
+                 count.row_starts, working);
     const auto blocks = queue.make_buffer<std::uint32_t>(n * block_words, "blocks");
-    const auto report = make_report(queue);
-    report_header(queue, report, header);
-    launch_items(queue, Kernel::blocks_count, n, ~0u, counters, blocks, report);
-    const auto sums = enqueue_block_sums(queue, blocks, report);
-    count.cells = totals_of(read_report(queue, report)).cells;
+    report_header(queue, working, header);
+    launch_items(queue, Kernel::blocks_count, n, ~0u, working, blocks);
+    const auto sums = enqueue_block_sums(queue, blocks, working);
+    count.cells = totals_of(read_report(queue, working)).cells;
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "core/launch.hpp"
 #include "setka/error.hpp"
@@ -32,7 +33,7 @@ struct TransformLayout {
 
 }  // namespace
 
-StartedTransform start_transform(Queue& queue, const DeviceScene& scene) {
+StartedTransform start_transform(Queue& queue, const DeviceScene& scene, Buffer<std::uint32_t> report) {
     scene.check_committed();
     StartedTransform started;
     WorldGeometry& geometry = started.geometry;
@@ -43,7 +44,7 @@ StartedTransform start_transform(Queue& queue, const DeviceScene& scene) {
     geometry.common_mask = scene.common_mask();
     queue.impl().begin_stage("transform");
     geometry.triangles = queue.make_buffer<float>(std::size_t(geometry.triangle_count) * 9, "world triangles");
-    started.report = make_report(queue);
+    started.report = report.empty() ? make_report(queue) : std::move(report);
     const TransformLayout layout(queue.device(), geometry.triangle_count);
     launch_groups(queue, Kernel::grid_transform, layout.groups, layout.group_size, geometry.triangle_count,
                   layout.elements, geometry.instance_count, scene.positions(), scene.indices(), scene.instances(),

@@ -13,8 +13,8 @@ struct StartedTransform {
     WorldGeometry geometry;
     Buffer<std::uint32_t> report;
 };
-/// Enqueues the transform of every triangle.
-[[nodiscard]] StartedTransform start_transform(Queue& queue, const DeviceScene& scene);
+/// Enqueues the transform of every triangle. `report` is words that are 0; one is made if it is empty.
+[[nodiscard]] StartedTransform start_transform(Queue& queue, const DeviceScene& scene, Buffer<std::uint32_t> report = {});
 /// Takes the bounds from what was reported. Throws InvalidData that names the first triangle that is not finite in world space, or
 /// a scene too large to calculate with (an extent above 1e20).
 void take_bounds(const Report& report, WorldGeometry& geometry);

@@ -62,6 +62,14 @@ SK_FUNCTION sk_u32 sk_add_to_total(SK_GLOBAL sk_u32* low, SK_GLOBAL sk_u32* high
     return before;
 }
 
+/**
+ * The working memory of a build that counts in cells: the report, the counters of cells, with the marks of blocks behind them, and what else the
+ * host has laid behind these. One buffer, since some drivers take time for each that a launch has.
+ */
+SK_FUNCTION SK_GLOBAL sk_u32* sk_counters_of(SK_GLOBAL sk_u32* working) { return working + SK_REPORT; }
+/** What begins at so many times 16 bytes. */
+SK_FUNCTION SK_GLOBAL sk_u32* sk_part_of(SK_GLOBAL sk_u32* working, sk_u32 at) { return working + (size_t)at * 4u; }
+
 SK_FUNCTION sk_u32 sk_number_at(sk_dims dims, sk_u32 x, sk_u32 y, sk_u32 z) { return (z * dims.y + y) * dims.x + x; }
 
 /** The block that holds a cell, and the cell's bit in it. */

@@ -34,7 +34,7 @@
 
 /**
  * What a build's kernels tell each other and the host, in one table of SK_REPORT words that are 0 at first: totals, what the transform found, and
- * the header of the grid in which is counted.
+ * the header of the grid in which is counted. Where cells have counters, these lie behind it (blocks.h).
  */
 #define SK_TOTAL_CELLS 0u      /* non-empty cells */
 #define SK_TOTAL_PAIRS_LOW 1u

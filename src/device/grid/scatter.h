@@ -17,11 +17,11 @@ typedef struct sk_scatter {
     SK_GLOBAL sk_u32* references;
 } sk_scatter;
 
-SK_FUNCTION sk_scatter sk_make_scatter(SK_GLOBAL const float* triangles, SK_GLOBAL sk_u32* counters,
+SK_FUNCTION sk_scatter sk_make_scatter(SK_GLOBAL const float* triangles, SK_GLOBAL sk_u32* working,
                                        SK_GLOBAL sk_u32* references) {
     sk_scatter r;
     r.triangles = triangles;
-    r.counters = counters;
+    r.counters = sk_counters_of(working);
     r.references = references;
     return r;
 }
@@ -74,10 +74,11 @@ typedef struct sk_row_list {
     sk_u32 capacity;
 } sk_row_list;
 
-SK_FUNCTION sk_row_list sk_make_row_list(SK_GLOBAL sk_u32* entries, SK_GLOBAL sk_u32* totals, sk_u32 capacity) {
+/** That of the working memory, in which it begins `at` times 16 bytes from the start. */
+SK_FUNCTION sk_row_list sk_make_row_list(SK_GLOBAL sk_u32* working, sk_u32 at, sk_u32 capacity) {
     sk_row_list r;
-    r.entries = entries;
-    r.totals = totals;
+    r.entries = sk_part_of(working, at);
+    r.totals = working;
     r.capacity = capacity;
     return r;
 }
@@ -165,8 +166,9 @@ SK_FUNCTION SK_GLOBAL sk_u32* sk_marks_behind(SK_GLOBAL sk_u32* counters, sk_dim
  * Block b from the counters of its cells; `clearance` becomes the number of its pairs. Lists longer than `alone` come in pieces. A block
  * beyond the grid's last one, for which there is room only because the grid was not known, is empty.
  */
-SK_FUNCTION void sk_count_block(sk_u32 b, sk_u32 alone, SetkaGridHeader grid, SK_GLOBAL sk_u32* counters,
-                                SK_GLOBAL sk_block* blocks, SK_GLOBAL sk_u32* totals) {
+SK_FUNCTION void sk_count_block(sk_u32 b, sk_u32 alone, SetkaGridHeader grid, SK_GLOBAL sk_u32* working,
+                                SK_GLOBAL sk_block* blocks) {
+    SK_GLOBAL sk_u32* counters = sk_counters_of(working);
     const sk_dims dims = sk_block_dims(sk_cell_dims(grid));
     const sk_u32 rows = b < sk_block_count(dims) ? SK_BLOCK_CELLS / 4u : 0u;
     SK_GLOBAL const sk_four_counts* own = (SK_GLOBAL const sk_four_counts*)(counters + (size_t)b * SK_BLOCK_CELLS);
@@ -181,8 +183,8 @@ SK_FUNCTION void sk_count_block(sk_u32 b, sk_u32 alone, SetkaGridHeader grid, SK
     }
     blocks[b] = sk_counted_block(tally);
     if (tally.mask != 0u) sk_mark_block(dims, b, sk_marks_behind(counters, dims));
-    if (tally.longest > sk_min_u32(alone, SK_LONG_LIST)) sk_atomic_max(totals + SK_TOTAL_LONGEST, tally.longest);
-    if (pieces != 0u) sk_atomic_add(totals + SK_TOTAL_PIECES, pieces);
+    if (tally.longest > sk_min_u32(alone, SK_LONG_LIST)) sk_atomic_max(working + SK_TOTAL_LONGEST, tally.longest);
+    if (pieces != 0u) sk_atomic_add(working + SK_TOTAL_PIECES, pieces);
 }
 
 /** Cuts a list into pieces. */
@@ -200,9 +202,10 @@ SK_FUNCTION void sk_cut_list(sk_cell_list list, SK_GLOBAL sk_piece* pieces, SK_G
  * The record of block b and those of its cells, from what was counted and scanned (`block`); the counters become the first places of the lists.
  * Empty blocks learn their clearance.
  */
-SK_FUNCTION void sk_lay_out_block(sk_u32 b, sk_u32 alone, SetkaGridHeader grid, SK_GLOBAL sk_u32* counters,
+SK_FUNCTION void sk_lay_out_block(sk_u32 b, sk_u32 alone, SetkaGridHeader grid, SK_GLOBAL sk_u32* working,
                                   sk_block block, SK_GLOBAL sk_block* blocks, SK_GLOBAL sk_cell_list* cells,
-                                  SK_GLOBAL sk_piece* pieces, SK_GLOBAL sk_u32* totals) {
+                                  SK_GLOBAL sk_piece* pieces) {
+    SK_GLOBAL sk_u32* counters = sk_counters_of(working);
     const sk_dims dims = sk_block_dims(sk_cell_dims(grid));
     SK_GLOBAL sk_u32* own = counters + (size_t)b * SK_BLOCK_CELLS;
     sk_u32 r = block.first;
@@ -213,7 +216,7 @@ SK_FUNCTION void sk_lay_out_block(sk_u32 b, sk_u32 alone, SetkaGridHeader grid, 
         list.count = own[bit];
         own[bit] = list.offset;
         cells[r] = list;
-        if (list.count > alone) sk_cut_list(list, pieces, totals);
+        if (list.count > alone) sk_cut_list(list, pieces, working);
         list.offset += list.count;
         r += 1u;
     }
