@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "backend/opencl/opencl_queue.hpp"
 
+#include <chrono>
 #include <cstddef>
 #include <cstring>
 #include <optional>
@@ -28,6 +29,10 @@ constexpr std::size_t staging_bytes = std::size_t(32) << 20;
 constexpr std::size_t largest_staged_bytes = std::size_t(8) << 20;
 
 constexpr std::byte few_zeros[1024]{};
+
+/// What is read at once, reports and sums among it, and for how long a thread looks whether it has come before it lets the driver wait.
+constexpr std::size_t few_bytes = 4096;
+constexpr std::chrono::milliseconds longest_look(1);
 
 /// Whether a write has ended. Throws if it failed: always DeviceFailed, since whoever asked for it has gone on, and nobody who has
 /// less to do next time makes up for it.
@@ -91,6 +96,7 @@ OpenClQueue::~OpenClQueue() {
     try {
         // The device may still have to fetch what is staged.
         if (!staged_.empty()) queue_.finish();
+        if (answer_bytes_ != nullptr) queue_.enqueueUnmapMemObject(answer_, answer_bytes_);
     } catch (const cl::Error& error) {
         log_line(opencl_error("waiting for " + device_->info().id, error).what());
     }
@@ -198,10 +204,29 @@ void OpenClQueue::read(Memory& source, void* target, std::uint64_t size_bytes) {
             queue_.finish();
         });
     } else {
-        // NVIDIA's driver takes longer to read without blocking and to wait for that.
-        guarded(what, [&] { queue_.enqueueReadBuffer(memory.buffer, CL_TRUE, 0, size_bytes, target); });
+        guarded(what, [&] {
+            if (size_bytes <= few_bytes && device_->info().type == DeviceType::Gpu && settings().pooling)
+                read_few(memory.buffer, target, size_bytes);
+            else  // NVIDIA's driver takes longer to read without blocking and to wait for that, if the driver does not own the memory.
+                queue_.enqueueReadBuffer(memory.buffer, CL_TRUE, 0, size_bytes, target);
+        });
     }
     note_idle();
+}
+
+void OpenClQueue::read_few(const cl::Buffer& source, void* target, std::uint64_t size_bytes) {
+    if (answer_bytes_ == nullptr) {
+        answer_ = cl::Buffer(device_->context(), CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR, few_bytes);
+        answer_bytes_ = queue_.enqueueMapBuffer(answer_, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0, few_bytes);
+    }
+    cl::Event event;
+    queue_.enqueueReadBuffer(source, CL_FALSE, 0, size_bytes, answer_bytes_, nullptr, &event);
+    queue_.flush();
+    const auto enough = std::chrono::steady_clock::now() + longest_look;
+    while (event.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() > CL_COMPLETE && std::chrono::steady_clock::now() < enough) {
+    }
+    event.wait();  // tells of failures, too
+    std::memcpy(target, answer_bytes_, size_bytes);
 }
 
 std::unique_ptr<PendingRead> OpenClQueue::read_later(Memory& source, void* target, std::uint64_t size_bytes) {

@@ -40,6 +40,8 @@ class OpenClQueue final : public Queue {
     /// Everything that was enqueued is done: staged writes that failed tell so now.
     void note_idle();
     void write_staged(Memory& target, std::uint64_t at, const void* source, std::uint64_t size_bytes);
+    /// Reads few bytes into memory that the device reaches by itself. Throws cl::Error.
+    void read_few(const cl::Buffer& source, void* target, std::uint64_t size_bytes);
 
     std::shared_ptr<OpenClDevice> device_;
     std::shared_ptr<OpenClPool> pool_;
@@ -49,6 +51,8 @@ class OpenClQueue final : public Queue {
     StageClock<cl::Event> clock_;
     std::unique_ptr<std::byte[]> staging_;  ///< made when it is first needed
     StagingRing<cl::Event> staged_;
+    cl::Buffer answer_;  ///< for read_few(), made when it is first needed; mapped for good
+    void* answer_bytes_ = nullptr;
     bool is_idle_ = true;  ///< nothing was enqueued since something waited for all there was
 };
 
