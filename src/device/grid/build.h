@@ -51,6 +51,36 @@ SK_FUNCTION sk_extremes sk_transform_triangle(sk_u32 i, sk_u32 instance_count, S
 
 #if SK_WIDTH > 1
 
+/** What was seen of one vertex of each triangle; NaN in `odd` where some were not finite, and from then on. */
+typedef struct sk_extremes4 {
+    sk_f4 low, high, odd;
+} sk_extremes4;
+
+SK_FUNCTION sk_extremes4 sk_see4(sk_extremes4 seen, sk_f4 q) {
+    sk_extremes4 r;
+    r.low = q < seen.low ? q : seen.low;
+    r.high = seen.high < q ? q : seen.high;
+    r.odd = seen.odd + (q - q);
+    return r;
+}
+SK_FUNCTION sk_extremes4 sk_both4(sk_extremes4 a, sk_extremes4 b) {
+    sk_extremes4 r;
+    r.low = b.low < a.low ? b.low : a.low;
+    r.high = a.high < b.high ? b.high : a.high;
+    r.odd = a.odd + b.odd;
+    return r;
+}
+
+/** A point by the columns of a matrix. */
+typedef struct sk_columns4 {
+    sk_f4 x, y, z, w;
+} sk_columns4;
+SK_FUNCTION sk_f4 sk_transform_point4(sk_columns4 by, SK_GLOBAL const float* p) {
+    const sk_f4 zero = sk_same_f4(0.0f);
+    const sk_f4 sum = ((by.x * sk_same_f4(p[0]) + by.y * sk_same_f4(p[1])) + by.z * sk_same_f4(p[2])) + by.w;
+    return sum == zero ? zero : sum;
+}
+
 /**
  * Stage 1 of triangles first to end - 1, by a work-item alone: the sums of sk_transform_point(), those of x, y and z side by side. What is the same
  * for all triangles of an instance is found once.
@@ -59,8 +89,12 @@ SK_FUNCTION sk_extremes sk_transform_run(sk_u32 first, sk_u32 end, sk_u32 instan
                                          SK_GLOBAL const sk_u32* indices, SK_GLOBAL const SetkaInstance* instances,
                                          SK_GLOBAL const sk_u32* instance_starts, SK_GLOBAL float* triangles,
                                          SK_GLOBAL sk_u32* first_bad) {
-    const sk_f4 zero = sk_same_f4(0.0f);
-    sk_f4 low = sk_same_f4(sk_bits_float(0x7f800000u)), high = -low, odd = zero;
+    const float infinity = sk_bits_float(0x7f800000u);
+    sk_extremes4 a, b, c; /* by vertex: what is seen of one waits for what was seen before */
+    a.low = sk_same_f4(infinity);
+    a.high = sk_same_f4(-infinity);
+    a.odd = sk_same_f4(0.0f);
+    b = c = a;
     sk_extremes seen;
     for (sk_u32 i = first; i < end;) {
         SK_GLOBAL const SetkaInstance* instance = instances + sk_find_segment(instance_starts, instance_count, i);
@@ -68,30 +102,30 @@ SK_FUNCTION sk_extremes sk_transform_run(sk_u32 first, sk_u32 end, sk_u32 instan
         SK_GLOBAL const float* vertices = positions + (size_t)instance->first_vertex * 3u;
         SK_GLOBAL const float* m = instance->matrix;
         const sk_f4 row_x = sk_load_f4(m), row_y = sk_load_f4(m + 4), row_z = sk_load_f4(m + 8);
+        sk_columns4 by;
         const sk_f4 columns01 = sk_shuffle(row_x, row_y, 0, 4, 1, 5), columns23 = sk_shuffle(row_x, row_y, 2, 6, 3, 7);
-        const sk_f4 column0 = sk_shuffle(columns01, row_z, 0, 1, 4, 4), column1 = sk_shuffle(columns01, row_z, 2, 3, 5, 5);
-        const sk_f4 column2 = sk_shuffle(columns23, row_z, 0, 1, 6, 6), column3 = sk_shuffle(columns23, row_z, 2, 3, 7, 7);
+        by.x = sk_shuffle(columns01, row_z, 0, 1, 4, 4);
+        by.y = sk_shuffle(columns01, row_z, 2, 3, 5, 5);
+        by.z = sk_shuffle(columns23, row_z, 0, 1, 6, 6);
+        by.w = sk_shuffle(columns23, row_z, 2, 3, 7, 7);
         const sk_u32 stop = sk_min_u32(end, instance_starts[(instance - instances) + 1]);
         for (; i < stop; ++i, index += 3) {
             SK_GLOBAL float* triangle = triangles + (size_t)i * 9u;
-            for (sk_u32 k = 0u; k < 3u; ++k) {
-                SK_GLOBAL const float* p = vertices + (size_t)index[k] * 3u;
-                const sk_f4 sum = ((column0 * sk_same_f4(p[0]) + column1 * sk_same_f4(p[1])) + column2 * sk_same_f4(p[2])) + column3;
-                const sk_f4 q = sum == zero ? zero : sum;
-                low = q < low ? q : low;
-                high = high < q ? q : high;
-                odd += q - q; /* NaN where q is not finite, and from then on */
-                if (k < 2u) {
-                    sk_store_f4(q, triangle + 3u * k); /* the next vertex comes over the fourth */
-                } else {
-                    triangle[6] = sk_lane(q, 0);
-                    triangle[7] = sk_lane(q, 1);
-                    triangle[8] = sk_lane(q, 2);
-                }
-            }
+            const sk_f4 p = sk_transform_point4(by, vertices + (size_t)index[0] * 3u);
+            const sk_f4 q = sk_transform_point4(by, vertices + (size_t)index[1] * 3u);
+            const sk_f4 r = sk_transform_point4(by, vertices + (size_t)index[2] * 3u);
+            sk_store_f4(p, triangle); /* the next vertex comes over the fourth */
+            sk_store_f4(q, triangle + 3);
+            triangle[6] = sk_lane(r, 0);
+            triangle[7] = sk_lane(r, 1);
+            triangle[8] = sk_lane(r, 2);
+            a = sk_see4(a, p);
+            b = sk_see4(b, q);
+            c = sk_see4(c, r);
         }
     }
-    if (!(sk_lane(odd, 0) == 0.0f && sk_lane(odd, 1) == 0.0f && sk_lane(odd, 2) == 0.0f)) {
+    a = sk_both4(a, sk_both4(b, c));
+    if (!(sk_lane(a.odd, 0) == 0.0f && sk_lane(a.odd, 1) == 0.0f && sk_lane(a.odd, 2) == 0.0f)) {
         sk_u32 i = first, finite = 1u;
         while (i < end && finite != 0u) {
             for (sk_u32 c = 0u; c < 9u; ++c) finite &= (sk_u32)sk_is_finite(triangles[(size_t)i * 9u + c]);
@@ -99,8 +133,8 @@ SK_FUNCTION sk_extremes sk_transform_run(sk_u32 first, sk_u32 end, sk_u32 instan
         }
         (void)sk_atomic_max(first_bad, ~i);
     }
-    seen.low = sk_make3(sk_lane(low, 0), sk_lane(low, 1), sk_lane(low, 2));
-    seen.high = sk_make3(sk_lane(high, 0), sk_lane(high, 1), sk_lane(high, 2));
+    seen.low = sk_make3(sk_lane(a.low, 0), sk_lane(a.low, 1), sk_lane(a.low, 2));
+    seen.high = sk_make3(sk_lane(a.high, 0), sk_lane(a.high, 1), sk_lane(a.high, 2));
     return seen;
 }
 
