@@ -13,7 +13,7 @@ namespace setka {
 /// How the lists of the cells come about. The tables are the same in any case.
 enum class CellTables {
     Auto,           ///< Bins on CPUs whose drivers compile vectors well, else Scatter
-    Bins,           ///< runs of triangles hand their cells to bins of 16 x 16 x 16 cells, each of which makes its lists alone: without atomics
+    Bins,           ///< runs of triangles hand their cells to bins of 16 x 16 x 16 cells, each of which makes its lists alone: without an atomic operation for each pair
     Scatter,        ///< triangles are counted in their cells, take places in the lists, and each list is put in order
     RunBoundaries,  ///< pairs are sorted by cell; each compares its cell with its neighbours': reads the pairs once
     BinarySearch,   ///< the same, but each cell searches for its first and last pair, as in section 2.3 of the paper

@@ -31,14 +31,14 @@ std::uint64_t usual_pairs(std::uint32_t triangles, float density) {
     return static_cast<std::uint64_t>(std::ceil(double(triangles) * (2 + 4 * side * side))) + 8192;
 }
 
-/// Runs long enough to be worth their bounds, short enough to stay in a core's cache, and so many that cores come out even. Few work-items share them,
-/// and groups of bins, with reaches and counters that stay there too, but more than cores: PoCL hands a core several at once. Other devices may end a
-/// long loop early, or have very many work-items: there bins and short runs have one each.
+/// Runs long enough to be worth their bounds, and so many that cores come out even and, of scenes of a million triangles or two, stay in their caches.
+/// Few work-items share them, and groups of bins, with reaches and counters that stay there too, but more than cores: PoCL hands a core several at once.
+/// Other devices may end a long loop early, or have very many work-items: there bins and short runs have one each.
 BinRoom divided(const Device& device, std::uint32_t triangles, BinRoom room) {
     constexpr std::uint32_t most_counters = 1u << 24;
     const std::uint32_t shortest = prefers_bins(device) ? 2048 : 64;
     const std::uint32_t items = 4 * std::max(1u, device.info().compute_units);
-    const std::uint64_t runs = prefers_bins(device) ? std::max(64u, 4 * items) : divide_up(triangles, shortest);
+    const std::uint64_t runs = prefers_bins(device) ? std::max(64u, 4 * items) : std::max<std::uint64_t>(1, divide_up(triangles, shortest));
     const std::uint64_t most_runs = std::clamp<std::uint64_t>(most_counters / room.bins, 1, runs);
     room.run = static_cast<std::uint32_t>(std::clamp<std::uint64_t>(divide_up(triangles, most_runs), shortest, SK_LONGEST_RUN));
     room.runs = static_cast<std::uint32_t>(divide_up(triangles, room.run));
@@ -95,14 +95,17 @@ bool fits_filling(const GridLimits& limits, const Device& device, const WorldGeo
     return limits.fits(geometry.triangles.size_bytes() + fill_bytes(device, room));
 }
 
-/// Launches a kernel whose work-items, each a group of its own, share n runs or groups of bins. Where a stop can be requested, some at a time.
+/// Launches a kernel whose work-items, each a group of its own, share n runs or groups of bins. Where a stop can be requested, `step` at a time.
 template <typename... Ts>
-void launch_shared(Queue& queue, Kernel kernel, std::uint32_t n, std::uint32_t items, BinnedCount& count, const Ts&... arguments) {
-    const std::uint32_t step = queue.impl().stop_token().stop_possible() ? 4 * items : n;
-    for (std::uint32_t first = 0; first < n; first += std::min(step, n - first)) {
-        const std::uint32_t end = first + std::min(step, n - first), before = count.taken - first;
-        launch_groups(queue, kernel, items, 1, end, items, before, count.room.run, count.room.bins, arguments...);
-        count.taken += end - first + items;
+void launch_shared(Queue& queue, Kernel kernel, std::uint32_t n, std::uint32_t items, std::uint64_t step, BinnedCount& count,
+                   const Ts&... arguments) {
+    const bool has_one_each = !prefers_bins(queue.device());
+    if (!queue.impl().stop_token().stop_possible()) step = n;
+    for (std::uint64_t first = 0; first < n; first += step) {
+        const auto end = static_cast<std::uint32_t>(std::min(first + step, std::uint64_t(n))), elements = end - static_cast<std::uint32_t>(first);
+        const std::uint32_t own = has_one_each ? elements : items, before = count.taken - static_cast<std::uint32_t>(first);
+        launch_groups(queue, kernel, own, 1, end, own, before, has_one_each ? 1 : ~0u, count.room.run, count.room.bins, arguments...);
+        count.taken += has_one_each ? own : elements + own;  // each has taken one too many, if it could
     }
 }
 
@@ -110,7 +113,7 @@ void launch_shared(Queue& queue, Kernel kernel, std::uint32_t n, std::uint32_t i
 template <typename... Ts>
 void launch_bins(Queue& queue, Kernel kernel, std::uint32_t bins, BinnedCount& count, const Ts&... arguments) {
     const auto groups = static_cast<std::uint32_t>(divide_up(bins, count.room.together));
-    launch_shared(queue, kernel, groups, count.room.bin_items, count, arguments...);
+    launch_shared(queue, kernel, groups, count.room.bin_items, count.room.bin_items, count, arguments...);
 }
 
 /// Large triangles with so many cells at least, in units of SK_LONG_ROW, are not for bins: their rows are better spread over work-items of
@@ -127,7 +130,8 @@ BinnedCount enqueue_bins(Queue& queue, const WorldGeometry& geometry, const Buff
     count.reaches = queue.make_buffer<std::uint32_t>(reaches_of(room), "cells of small triangles");
     count.bounds = queue.make_buffer<std::uint32_t>(bounds_of(room), "bounds of pairs in bins");
     count.pairs = queue.make_buffer<std::uint32_t>(room.pairs, "pairs in bins");
-    launch_shared(queue, Kernel::bins_fill, room.runs, room.run_items, count, room.pairs, most, geometry.triangles, count.reaches, count.bounds,
+    const std::uint64_t a_launch = std::max<std::uint64_t>(room.run_items, triangles_a_launch(queue.device()) / room.run);
+    launch_shared(queue, Kernel::bins_fill, room.runs, room.run_items, a_launch, count, room.pairs, most, geometry.triangles, count.reaches, count.bounds,
                   count.pairs, report);
     queue.impl().begin_stage("blocks");
     count.counters = queue.make_buffer<std::uint32_t>(std::uint64_t(room.bin_items) * SK_BIN_CELLS, "counters of bins");
@@ -198,7 +202,8 @@ std::optional<BinnedCount> finish_bins(Queue& queue, const WorldGeometry& geomet
         count.longest_list = totals.longest_list;
         return limits.fits(world + binned_bytes(device, header, count));
     };
-    if (!has_space() && (!fill_again(totals.binned_pairs) || !has_space())) return {};
+    const bool is_exact = count.room.pairs == totals.binned_pairs && count.room.blocks == block_count(header);
+    if (!has_space() && (is_exact || !fill_again(totals.binned_pairs) || !has_space())) return {};
     count.reaches = {};
     return count;
 }

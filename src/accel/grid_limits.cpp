@@ -71,6 +71,10 @@ void GridLimits::refuse_count(const std::string& count) const {
                                                 ": use a lower density or fewer cells along an axis");
 }
 
+std::uint64_t triangles_a_launch(const Device& device) {
+    return device.info().type == DeviceType::Cpu ? 1u << 16 : 1u << 22;
+}
+
 std::uint64_t rows_a_launch(const Device& device, const std::uint32_t (&dims)[3]) {
     const bool is_cpu = device.info().type == DeviceType::Cpu;
     const std::uint64_t columns = is_cpu ? 1u << 23 : 1u << 26;

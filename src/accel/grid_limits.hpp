@@ -39,4 +39,7 @@ class GridLimits {
 /// as the grid, and enough to fill a GPU.
 [[nodiscard]] std::uint64_t rows_a_launch(const Device& device, const std::uint32_t (&dims)[3]);
 
+/// The most triangles of one launch where a stop can be requested.
+[[nodiscard]] std::uint64_t triangles_a_launch(const Device& device);
+
 }  // namespace setka

@@ -32,11 +32,6 @@ std::uint32_t row_items(const Device& device, std::uint32_t capacity) {
     return capacity / (device.options().primitives == PrimitiveShape::Serial ? 4 : 16) + 1;
 }
 
-/// The most triangles of one launch where a stop can be requested.
-std::uint64_t triangles_a_launch(const Device& device) {
-    return device.info().type == DeviceType::Cpu ? 1u << 16 : 1u << 22;
-}
-
 /// Triangles that one work-item counts.
 std::uint32_t triangles_an_item(const Device& device) {
     return device.options().primitives == PrimitiveShape::Serial ? 8 : 1;

@@ -113,7 +113,7 @@ struct FewCells {
     }
 };
 
-/// Fills all runs, in some order, with one work-item's reaches.
+/// Fills runs one by one, in some order, with one work-item's reaches.
 std::vector<sk_u32> fill(const FewCells& scene, sk_u32 length, const std::vector<sk_u32>& order, std::vector<sk_u32>& pairs, sk_u32 capacity,
                          std::vector<sk_u32>& report) {
     std::vector<sk_u32> bounds(order.size() * (FewCells::bins + 1), guard);
@@ -123,6 +123,20 @@ std::vector<sk_u32> fill(const FewCells& scene, sk_u32 length, const std::vector
                     report.data());
     return bounds;
 }
+
+/// The records of blocks, their totals found as a scan would.
+struct Blocks {
+    std::vector<sk_block> counted;
+    sk_u32 cells = 0, places = 0;
+
+    Blocks(const sk_block* blocks, sk_u32 count) : counted(blocks, blocks + count) {
+        for (sk_block& block : counted) {
+            block.first = cells;
+            cells += sk_bit_count(sk_mask_of(block));
+            places += std::exchange(block.clearance, places);
+        }
+    }
+};
 
 /// Each list has its triangles of every run, in ascending order, whichever run came first.
 TEST(Bins, ListsHaveTheTrianglesOfEveryRun) {
@@ -149,16 +163,11 @@ TEST(Bins, ListsHaveTheTrianglesOfEveryRun) {
         const sk_u32 x = b % in_blocks.x, y = b / in_blocks.x % in_blocks.y, z = b / in_blocks.x / in_blocks.y;
         ASSERT_EQ(filled[x / 4] >> sk_bit_in_block(x, y, z) & 1u, sk_mask_of(counted[b]) != 0u ? 1u : 0u) << "block " << b;
     }
-    sk_u32 cells = 0, places = 0;
-    for (sk_block& block : counted) {
-        block.first = cells;
-        cells += sk_bit_count(sk_mask_of(block));
-        places += std::exchange(block.clearance, places);
-    }
-    ASSERT_EQ(places, scene.pairs());
-    std::vector<sk_cell_list> lists(cells);
+    const Blocks laid_out(counted.data(), count);
+    ASSERT_EQ(laid_out.places, scene.pairs());
+    std::vector<sk_cell_list> lists(laid_out.cells);
     for (sk_u32 b = 0; b < bins; ++b)
-        sk_place_bin(b, grid, all, counters.data(), counted.data(), filled.data(), blocks.data(), lists.data(), references.data());
+        sk_place_bin(b, grid, all, counters.data(), laid_out.counted.data(), filled.data(), blocks.data(), lists.data(), references.data());
     for (sk_u32 c = 0; c < grid.cell_count; ++c) {
         const sk_u32 x = c % 20, y = c / 20 % 16, z = c / 320, bit = sk_bit_in_block(x, y, z);
         const sk_block block = blocks[sk_block_of(in_blocks, x, y, z)];
@@ -168,6 +177,82 @@ TEST(Bins, ListsHaveTheTrianglesOfEveryRun) {
         const sk_cell_list list = lists[block.first + sk_rank_of(block, bit)];
         ASSERT_EQ(std::vector(&references[list.offset], &references[list.offset] + list.count), expected) << "cell " << x << ' ' << y << ' ' << z;
         EXPECT_GT(list.count, 100u);
+    }
+}
+
+/// Work-items that share runs and bins, over several launches, make what runs and bins one by one do: whatever each of them gets, and whether it takes
+/// all that it can or one at most.
+TEST(Bins, AreSharedByWorkItems) {
+    constexpr sk_u32 length = 100, runs = 13, bins = FewCells::bins, spare = 5;
+    const FewCells scene(runs * length - 7);
+    const sk_u32 count = sk_block_count(sk_block_dims(sk_cell_dims(scene.grid))), room = scene.pairs();
+    std::vector<std::vector<sk_u32>> all_references;
+    for (const sk_u32 most : {1u, ~0u})
+        for (const sk_u32 together : {1u, 2u}) {
+            std::vector<sk_u32> report(SK_REPORT, 0), pairs(room), bounds(runs * (bins + 1), guard), counters(SK_BIN_CELLS), references(room);
+            std::vector<sk_reach> reaches(length);
+            std::vector<sk_u64> filled(bins);
+            std::vector<sk_block> counted(count + spare, sk_block{guard, guard, guard, guard}), blocks(count);
+            sk_u32 taken = 0;
+            // Calls work(n, before) for each work-item of launches of up to five elements.
+            const auto share = [&](sk_u32 n, const auto& work) {
+                for (sk_u32 first = 0; first < n; first += 5) {
+                    const sk_u32 end = std::min(n, first + 5), items = most == 1 ? end - first : 3;
+                    for (sk_u32 item = 0; item < items; ++item) work(end, taken - first);
+                    taken += most == 1 ? items : end - first + items;
+                }
+            };
+            share(runs, [&](sk_u32 n, sk_u32 before) {
+                sk_fill_runs(n, before, most, length, bins, room, 1000, scene.grid, scene.triangles.data(), reaches.data(), bounds.data(),
+                             pairs.data(), report.data());
+            });
+            ASSERT_EQ(report[SK_TOTAL_BINNED_LOW], room);
+            const sk_binned all = sk_make_binned(bounds.data(), pairs.data(), length, runs, bins);
+            share((bins + together - 1) / together, [&](sk_u32 n, sk_u32 before) {
+                sk_tally_bins(n, before, most, together, room, 1000, count + spare, scene.grid, all, counters.data(), counted.data(), filled.data(),
+                              report.data());
+            });
+            for (sk_u32 b = count; b < count + spare; ++b) ASSERT_EQ(sk_mask_of(counted[b]) + counted[b].clearance, 0u) << "beyond the grid";
+            const Blocks laid_out(counted.data(), count);
+            ASSERT_EQ(laid_out.places, room);
+            std::vector<sk_cell_list> lists(laid_out.cells);
+            share((bins + together - 1) / together, [&](sk_u32 n, sk_u32 before) {
+                sk_place_bins(n, before, most, together, scene.grid, all, counters.data(), laid_out.counted.data(), filled.data(), blocks.data(),
+                              lists.data(), references.data(), report.data());
+            });
+            ASSERT_EQ(report[SK_TOTAL_TAKEN], taken);
+            all_references.push_back(references);
+            for (const sk_cell_list& list : lists)
+                ASSERT_TRUE(std::is_sorted(&references[list.offset], &references[list.offset] + list.count));
+        }
+    std::vector<sk_u32> expected;
+    for (const auto& list : scene.lists) expected.insert(expected.end(), list.begin(), list.end());
+    for (std::vector<sk_u32>& references : all_references) {
+        EXPECT_EQ(references, all_references.front());
+        std::vector<sk_u32> sorted = references;
+        std::sort(sorted.begin(), sorted.end());
+        std::sort(expected.begin(), expected.end());
+        EXPECT_EQ(sorted, expected);
+    }
+}
+
+/// Once other runs have found more pairs than any grid may have, rows are not counted, and then nothing may be put: there is no room for them.
+TEST(Bins, RunsPutNothingThatMayNotHaveBeenCounted) {
+    FewCells scene(0);
+    constexpr sk_u32 length = 4;
+    scene.grid.triangle_count = length;
+    for (sk_u32 i = 0; i < length; ++i)  // six cells along x: by rows
+        scene.triangles.insert(scene.triangles.end(), {0.25f, 3.5f, 4.5f, 6.25f, 4.5f, 5.5f, 0.25f, 5.5f, 4.25f});
+    std::vector<sk_u32> bounds(FewCells::bins + 1), pairs(1000, guard);
+    std::vector<sk_reach> reaches(length);
+    for (const sk_u32 found : {0u, SK_MOST_LONG_ROWS}) {
+        std::vector<sk_u32> report(SK_REPORT, 0);
+        report[SK_TOTAL_FOUND] = found;
+        sk_fill_run(0, length, FewCells::bins, 1000, 1000, scene.grid, scene.triangles.data(), reaches.data(), bounds.data(), pairs.data(),
+                    report.data());
+        ASSERT_EQ(sk_reach_kind(reaches[0]), SK_REACH_ROWS);
+        EXPECT_EQ(std::count(pairs.begin(), pairs.end(), guard) == 1000, found != 0u);
+        std::fill(pairs.begin(), pairs.end(), guard);
     }
 }
 

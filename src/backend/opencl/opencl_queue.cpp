@@ -96,9 +96,13 @@ OpenClQueue::~OpenClQueue() {
     try {
         // The device may still have to fetch what is staged.
         if (!staged_.empty()) queue_.finish();
-        if (answer_bytes_ != nullptr) queue_.enqueueUnmapMemObject(answer_, answer_bytes_);
     } catch (const cl::Error& error) {
         log_line(opencl_error("waiting for " + device_->info().id, error).what());
+    }
+    try {
+        if (answer_bytes_ != nullptr) queue_.enqueueUnmapMemObject(answer_, answer_bytes_);
+    } catch (const cl::Error& error) {
+        log_line(opencl_error("giving back memory of " + device_->info().id, error).what());
     }
 }
 
@@ -205,6 +209,7 @@ void OpenClQueue::read(Memory& source, void* target, std::uint64_t size_bytes) {
         });
     } else {
         guarded(what, [&] {
+            // A checker knows best what a plain read does.
             if (size_bytes <= few_bytes && device_->info().type == DeviceType::Gpu && settings().pooling)
                 read_few(memory.buffer, target, size_bytes);
             else  // NVIDIA's driver takes longer to read without blocking and to wait for that, if the driver does not own the memory.

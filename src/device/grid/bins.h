@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /**
- * How do lists come about without sorting and without atomics, where few work-items run at a time? Cells come in bins of 16 x 16 x 16. Each work-item
+ * How do lists come about without sorting and without an atomic operation for each pair, where few work-items run at a time? Cells come in bins of 16 x 16 x 16. Each work-item
  * takes a run of triangles and writes its pairs (cell, triangle) bin by bin, in cache from the first to the last; a bin is one work-item's then, whose
  * counters fit the nearest cache and are nobody else's. It takes its pairs from one run after the other, in which they follow the triangles, so that
  * every list comes out in ascending order.
@@ -183,7 +183,7 @@ SK_FUNCTION int sk_have_too_many(sk_u64 units, sk_u32 most_units, SK_GLOBAL sk_u
 
 /**
  * Hands over the pairs of the run's triangle i. Those without a mask are counted until they are known to be more than any grid may have: it is refused
- * then, so that what other work-items see of that changes nothing else.
+ * then, and sk_fill_run() does not put what may not have been counted, so that what other work-items see of that changes nothing else.
  */
 SK_FUNCTION void sk_hand_over(sk_run_of_triangles run, sk_u32 i, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
                               SK_GLOBAL const sk_reach* reaches, SK_GLOBAL sk_u32* report, const int put) {
@@ -240,10 +240,12 @@ SK_FUNCTION void sk_fill_run(sk_u32 r, sk_u32 length, sk_u32 bins, sk_u32 capaci
     if (has_counted) has_counted = !sk_have_too_many(sk_find_reaches(0u, n, grid, first, reaches), most_units, report);
     if (has_counted) {
         sk_u64 all;
+        int is_whole;
         sk_count_pairs(run, n, grid, first, reaches, report);
         all = sk_sum_bins(bins, run.next);
+        is_whole = sk_still_counts(report); /* or pairs may be missing, and there is no room for them */
         own[0] = sk_add_to_total(report + SK_TOTAL_BINNED_LOW, report + SK_TOTAL_BINNED_HIGH, all);
-        if (all <= capacity && own[0] <= capacity - all) {
+        if (is_whole && all <= capacity && own[0] <= capacity - all) {
             sk_start_bins(own[0], bins, run.next);
             for (sk_u32 k = 0u; k < n; ++k) sk_hand_over(run, k, grid, first, reaches, report, 1);
         }
@@ -252,16 +254,20 @@ SK_FUNCTION void sk_fill_run(sk_u32 r, sk_u32 length, sk_u32 bins, sk_u32 capaci
 
 /**
  * The next of what the work-items of a launch share: they take one after the other, since not all of it takes equally long, and what each has of its
- * own stays in its cache. `before` is what earlier launches have taken, with one too many for each of their work-items.
+ * own stays in its cache. `before` is what earlier launches have taken, with one too many for each of their work-items; or no more than `most` each,
+ * where drivers may end long loops early.
  */
 SK_FUNCTION sk_u32 sk_take_next(SK_GLOBAL sk_u32* report, sk_u32 before) { return sk_atomic_add(report + SK_TOTAL_TAKEN, 1u) - before; }
 
 /** Fills with the runs that the work-item gets, of those below n. */
-SK_FUNCTION void sk_fill_runs(sk_u32 n, sk_u32 before, sk_u32 length, sk_u32 bins, sk_u32 capacity, sk_u32 most_units, SetkaGridHeader grid,
+SK_FUNCTION void sk_fill_runs(sk_u32 n, sk_u32 before, sk_u32 most, sk_u32 length, sk_u32 bins, sk_u32 capacity, sk_u32 most_units, SetkaGridHeader grid,
                               SK_GLOBAL const float* triangles, SK_GLOBAL sk_reach* reaches, SK_GLOBAL sk_u32* bounds,
                               SK_GLOBAL sk_u32* pairs, SK_GLOBAL sk_u32* report) {
-    for (sk_u32 r = sk_take_next(report, before); r < n; r = sk_take_next(report, before))
+    for (sk_u32 k = 0u; k < most; ++k) {
+        const sk_u32 r = sk_take_next(report, before);
+        if (r >= n) break;
         sk_fill_run(r, length, bins, capacity, most_units, grid, triangles, reaches, bounds, pairs, report);
+    }
 }
 
 /** What all runs have left. */
@@ -460,7 +466,7 @@ SK_FUNCTION sk_u32 sk_count_bin(sk_u32 bin, SetkaGridHeader grid, sk_binned all,
  * The same for the bins that the work-item gets, of n groups of `together` bins, whose bounds lie beside each other. Of `blocks` records, those that the
  * grid has no block for are empty ones, or all if not all pairs are in bins or the grid has more blocks: each group has its share of them.
  */
-SK_FUNCTION void sk_tally_bins(sk_u32 n, sk_u32 before, sk_u32 together, sk_u32 capacity, sk_u32 most_units, sk_u32 blocks, SetkaGridHeader grid,
+SK_FUNCTION void sk_tally_bins(sk_u32 n, sk_u32 before, sk_u32 most, sk_u32 together, sk_u32 capacity, sk_u32 most_units, sk_u32 blocks, SetkaGridHeader grid,
                                sk_binned all, SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_block* counted, SK_GLOBAL sk_u64* filled,
                                SK_GLOBAL sk_u32* report) {
     const sk_u32 blocks_of_grid = sk_block_count(sk_block_dims(sk_cell_dims(grid)));
@@ -469,7 +475,9 @@ SK_FUNCTION void sk_tally_bins(sk_u32 n, sk_u32 before, sk_u32 together, sk_u32 
     const int has_all = sk_is_binned(report, capacity, most_units) && blocks_of_grid <= blocks;
     const sk_u32 bins = has_all ? sk_min_u32(bins_of_grid, all.bins) : 0u, of_grid = has_all ? blocks_of_grid : 0u;
     sk_u32 longest = 0u;
-    for (sk_u32 group = sk_take_next(report, before); group < n; group = sk_take_next(report, before)) {
+    for (sk_u32 k = 0u; k < most; ++k) {
+        const sk_u32 group = sk_take_next(report, before);
+        if (group >= n) break;
         for (sk_u32 b = group * together; b < sk_min_u32(group * together + together, bins); ++b)
             longest = sk_max_u32(longest, sk_count_bin(b, grid, all, counters, counted, filled));
         for (sk_u32 b = sk_max_u32(group * share, of_grid); b < sk_min_u32(group * share + share, blocks); ++b)
@@ -581,13 +589,16 @@ SK_FUNCTION void sk_place_bin(sk_u32 bin, SetkaGridHeader grid, sk_binned all, S
 }
 
 /** The same for the bins that the work-item gets, of n groups of `together` bins. */
-SK_FUNCTION void sk_place_bins(sk_u32 n, sk_u32 before, sk_u32 together, SetkaGridHeader grid, sk_binned all, SK_GLOBAL sk_u32* counters,
+SK_FUNCTION void sk_place_bins(sk_u32 n, sk_u32 before, sk_u32 most, sk_u32 together, SetkaGridHeader grid, sk_binned all, SK_GLOBAL sk_u32* counters,
                                SK_GLOBAL const sk_block* counted, SK_GLOBAL const sk_u64* filled, SK_GLOBAL sk_block* blocks,
                                SK_GLOBAL sk_cell_list* lists, SK_GLOBAL sk_u32* references, SK_GLOBAL sk_u32* report) {
     const sk_u32 bins = sk_block_count(sk_bin_dims(sk_cell_dims(grid)));
-    for (sk_u32 group = sk_take_next(report, before); group < n; group = sk_take_next(report, before))
+    for (sk_u32 k = 0u; k < most; ++k) {
+        const sk_u32 group = sk_take_next(report, before);
+        if (group >= n) break;
         for (sk_u32 b = group * together; b < sk_min_u32(group * together + together, bins); ++b)
             sk_place_bin(b, grid, all, counters, counted, filled, blocks, lists, references);
+    }
 }
 
 #endif

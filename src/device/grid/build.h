@@ -90,7 +90,7 @@ SK_FUNCTION sk_extremes sk_transform_run(sk_u32 first, sk_u32 end, sk_u32 instan
                                          SK_GLOBAL const sk_u32* instance_starts, SK_GLOBAL float* triangles,
                                          SK_GLOBAL sk_u32* first_bad) {
     const float infinity = sk_bits_float(0x7f800000u);
-    sk_extremes4 a, b, c; /* by vertex: what is seen of one waits for what was seen before */
+    sk_extremes4 a, b, c; /* one a vertex, so that none waits for what is seen of another */
     a.low = sk_same_f4(infinity);
     a.high = sk_same_f4(-infinity);
     a.odd = sk_same_f4(0.0f);
@@ -128,7 +128,7 @@ SK_FUNCTION sk_extremes sk_transform_run(sk_u32 first, sk_u32 end, sk_u32 instan
     if (!(sk_lane(a.odd, 0) == 0.0f && sk_lane(a.odd, 1) == 0.0f && sk_lane(a.odd, 2) == 0.0f)) {
         sk_u32 i = first, finite = 1u;
         while (i < end && finite != 0u) {
-            for (sk_u32 c = 0u; c < 9u; ++c) finite &= (sk_u32)sk_is_finite(triangles[(size_t)i * 9u + c]);
+            for (sk_u32 k = 0u; k < 9u; ++k) finite &= (sk_u32)sk_is_finite(triangles[(size_t)i * 9u + k]);
             if (finite != 0u) ++i;
         }
         (void)sk_atomic_max(first_bad, ~i);
