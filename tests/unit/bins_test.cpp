@@ -183,7 +183,7 @@ TEST(Bins, ListsHaveTheTrianglesOfEveryRun) {
 /// Work-items that share runs and bins, over several launches, make what runs and bins one by one do: whatever each of them gets, and whether it takes
 /// all that it can or one at most.
 TEST(Bins, AreSharedByWorkItems) {
-    constexpr sk_u32 length = 100, runs = 13, bins = FewCells::bins, spare = 5;
+    constexpr sk_u32 length = 100, runs = 13, bins = FewCells::bins, spare = 200;
     const FewCells scene(runs * length - 7);
     const sk_u32 count = sk_block_count(sk_block_dims(sk_cell_dims(scene.grid))), room = scene.pairs();
     std::vector<std::vector<sk_u32>> all_references;
