@@ -26,7 +26,7 @@ struct BlockTotals {
     std::uint32_t cells = 0;         ///< that are not empty
     std::uint64_t pairs = 0;
     std::uint32_t longest_list = 0;  ///< 0 if none is longer than SK_LONG_LIST
-    // Of large triangles, where these were counted.
+    // Of large triangles, where these were counted; `rows` means nothing where there are bins (SK_TOTAL_TAKEN).
     std::uint32_t rows = 0;
     std::uint32_t long_rows = 0, found_long_rows = 0;
     std::uint32_t pieces = 0;        ///< of lists that one work-item does not sort alone

@@ -209,7 +209,7 @@ void OpenClQueue::read(Memory& source, void* target, std::uint64_t size_bytes) {
         });
     } else {
         guarded(what, [&] {
-            // A checker knows best what a plain read does.
+            // Without a pool a checker is at work: it is to see a plain read.
             if (size_bytes <= few_bytes && device_->info().type == DeviceType::Gpu && settings().pooling)
                 read_few(memory.buffer, target, size_bytes);
             else  // NVIDIA's driver takes longer to read without blocking and to wait for that, if the driver does not own the memory.
