@@ -52,6 +52,7 @@ typedef ulong sk_u64;
 #define sk_global_id() ((sk_u32)get_global_id(0))
 #define sk_local_id() ((sk_u32)get_local_id(0))
 #define sk_group_id() ((sk_u32)get_group_id(0))
+#define sk_group_count() ((sk_u32)get_num_groups(0))
 #define sk_local_size() ((sk_u32)get_local_size(0))
 #define sk_float_bits(f) as_uint(f)
 #define sk_bits_float(u) as_float(u)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /** Entries of the tracers, one a structure, query and step; the bodies are in src/device/trace and src/device/grid. Those with
- * `first` do rays first to n - 1, one a work-item; but trace_grid_closest_dda and trace_grid_any_dda have many in each on CPUs, and on GPUs last
- * teams of half as many. Those of a picture take rays tile by tile; where a work-item has many, the others do so too. */
+ * `first` do rays first to n - 1, one a work-item; but trace_grid_closest_dda and trace_grid_any_dda have many in each on CPUs, and on GPUs teams that
+ * take rays as they get through with them (`counts`). Those of a picture take rays tile by tile; where a work-item has many, the others do so too. */
 #include "platform.h"
 
 #include "device/grid/trace.h"
@@ -47,10 +47,10 @@ SK_TEAM_KERNEL void trace_grid_closest_dda(sk_u32 n, sk_u32 first, SetkaGridHead
                                            SK_GLOBAL const sk_u32* references,
                                            SK_GLOBAL const float* triangles,
                                            SK_GLOBAL const sk_u32* instance_starts,
-                                           SK_GLOBAL const SetkaInstance* instances) {
-    SK_SHARED_STORAGE sk_team team;
+                                           SK_GLOBAL const SetkaInstance* instances, SK_GLOBAL sk_u32* counts) {
+    SK_SHARED_STORAGE sk_list_team team;
     sk_trace_closest(&team, n, first, grid, params, rays, skip, hits,
-                     sk_make_tables(blocks, cells, references, triangles, instance_starts, instances));
+                     sk_make_tables(blocks, cells, references, triangles, instance_starts, instances), counts);
 }
 
 SK_TEAM_KERNEL void trace_grid_closest_picture(sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
@@ -92,10 +92,10 @@ SK_TEAM_KERNEL void trace_grid_any_dda(sk_u32 n, sk_u32 first, SetkaGridHeader g
                                        SK_GLOBAL const sk_cell_list* cells,
                                        SK_GLOBAL const sk_u32* references, SK_GLOBAL const float* triangles,
                                        SK_GLOBAL const sk_u32* instance_starts,
-                                       SK_GLOBAL const SetkaInstance* instances) {
-    SK_SHARED_STORAGE sk_team team;
+                                       SK_GLOBAL const SetkaInstance* instances, SK_GLOBAL sk_u32* counts) {
+    SK_SHARED_STORAGE sk_list_team team;
     sk_trace_any(&team, n, first, grid, params, rays, skip, occluded,
-                 sk_make_tables(blocks, cells, references, triangles, instance_starts, instances));
+                 sk_make_tables(blocks, cells, references, triangles, instance_starts, instances), counts);
 }
 
 SK_TEAM_KERNEL void trace_grid_any_picture(sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,

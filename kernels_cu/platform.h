@@ -27,6 +27,7 @@ typedef unsigned long long sk_u64;
 #define sk_global_id() (blockIdx.x * blockDim.x + threadIdx.x)
 #define sk_local_id() (threadIdx.x)
 #define sk_group_id() (blockIdx.x)
+#define sk_group_count() (gridDim.x)
 #define sk_local_size() (blockDim.x)
 #define sk_float_bits(f) __float_as_uint(f)
 #define sk_bits_float(u) __uint_as_float(u)

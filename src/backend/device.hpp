@@ -82,6 +82,12 @@ class Queue {
     [[nodiscard]] virtual std::vector<StageTime> take_timings() = 0;
     virtual void stop_timings() = 0;
 
+    /// So many words for what the groups of a launch count together (device/trace/params.h): each launch finds them at 0 and leaves them so, and what
+    /// it hits depends on that: a queue is of no use after a launch that its device broke off. They belong to the queue, and to no budget. nullptr
+    /// where the device's kernels have teams of one, which count nothing.
+    static constexpr std::size_t launch_count_words = SK_LAUNCH_COUNTS;
+    [[nodiscard]] virtual std::shared_ptr<Memory> launch_counts() { return nullptr; }
+
     // A backend may answer scan and sort with a well-kept library (PrimitiveShape::Library); the results have one right answer.
     // One without a library never resolves its options to that shape, and these are not called.
 

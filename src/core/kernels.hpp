@@ -59,7 +59,7 @@ inline constexpr std::size_t kernel_count = sizeof(kernel_names) / sizeof(kernel
            kernel == Kernel::trace_grid_cost_dda;
 }
 
-/// Kernels that trace a list of rays: on CPUs many in a work-item, on GPUs in teams of which the last may be halved (sk_trace_params.halved_teams).
+/// Kernels that trace a list of rays: on CPUs many in a work-item, on GPUs in teams that share the list (device/grid/trace.h).
 [[nodiscard]] constexpr bool traces_lists(Kernel kernel) noexcept {
     return kernel == Kernel::trace_grid_closest_dda || kernel == Kernel::trace_grid_any_dda;
 }

@@ -40,8 +40,8 @@ void launch_items(Queue& queue, Kernel kernel, std::uint32_t items, const Ts&...
 
 /// How the elements of a launch are shared out.
 struct Shares {
-    std::uint32_t an_item = 1;        ///< a work-item has so many
-    std::uint32_t halved_groups = 0;  ///< so many of the last groups are two, with half of the elements each
+    std::uint32_t an_item = 1;         ///< a work-item has so many
+    std::uint32_t sharing_groups = 0;  ///< if not 0: up to so many groups share the elements; where these are few, about half of its work-items begin with one
 };
 
 /// The same for a kernel that takes a second number, the first element (`n, first, …`), and does elements first to n - 1. Where a stop can be
@@ -50,11 +50,11 @@ template <typename... Ts>
 void launch_shares(Queue& queue, Kernel kernel, std::uint32_t items, Shares shares, std::uint64_t most, const Ts&... arguments) {
     const std::uint32_t group_size = std::max(1u, group_size_of(queue, kernel) / shares.an_item);
     const std::uint64_t step = queue.impl().stop_token().stop_possible() ? std::max<std::uint64_t>(most, 1) : items;
-    const std::uint64_t a_group = std::uint64_t(group_size) * shares.an_item;
+    const std::uint64_t least = std::uint64_t(group_size) * shares.an_item / (shares.sharing_groups != 0 ? 2 : 1);
     for (std::uint64_t first = 0; first < items; first += step) {
         const std::uint64_t end = std::min<std::uint64_t>(items, first + step);
-        const auto groups = static_cast<std::uint32_t>((end - first + a_group - 1) / a_group);
-        launch_groups(queue, kernel, groups + std::min(groups, shares.halved_groups), group_size,
+        const auto groups = static_cast<std::uint32_t>((end - first + least - 1) / least);
+        launch_groups(queue, kernel, shares.sharing_groups != 0 ? std::min(groups, shares.sharing_groups) : groups, group_size,
                       static_cast<std::uint32_t>(end), static_cast<std::uint32_t>(first), arguments...);
     }
 }

@@ -84,10 +84,12 @@ struct Query {
         return params;
     }
 
-    /// How many of a kernel's last teams are halved, if it can have such: on an H200, which has 28 a compute unit at once, half of those.
-    [[nodiscard]] std::uint32_t halved_teams(Kernel kernel) const {
-        const Device& device = queue.device();
-        return traces_lists(kernel) && device.impl()->team_size() > 1 ? device.info().compute_units * 14 : 0;
+    /// How a kernel that traces the grid shares out the rays. Teams are as many as an H200 has at once.
+    [[nodiscard]] Shares shares(Kernel kernel) const {
+        const backend::Device& device = *queue.device().impl();
+        if (!traces_lists(kernel)) return {};
+        if (device.team_size() > 1) return {.sharing_groups = device.info().compute_units * 28};
+        return {.an_item = elements_an_item(kernel, device.width())};
     }
 
     /// `first` are the plain values.
@@ -106,11 +108,13 @@ struct Query {
                     const std::uint32_t width = queue.device().impl()->width();
                     const Kernel dda = scene.tiled_rays != 0 && width == 1 ? kernels.grid_picture : kernels.grid_dda;
                     const Kernel kernel = options.step == GridStep::Dda ? dda : kernels.grid_branch_free;
-                    scene.halved_teams = halved_teams(kernel);
-                    launch_shares(queue, kernel, n, {elements_an_item(kernel, width), scene.halved_teams}, most, values...,
-                                  grid.header(), scene, batch.rays, batch.skip, particular..., tables.blocks,
-                                  tables.cells, tables.references, geometry.triangles,
-                                  geometry.instance_starts, geometry.instances);
+                    const auto launch = [&](const auto&... last) {
+                        launch_shares(queue, kernel, n, shares(kernel), most, values..., grid.header(), scene, batch.rays, batch.skip,
+                                      particular..., tables.blocks, tables.cells, tables.references, geometry.triangles,
+                                      geometry.instance_starts, geometry.instances, last...);
+                    };
+                    if (traces_lists(kernel)) launch(Buffer<std::uint32_t>(queue.impl().launch_counts(), backend::Queue::launch_count_words));
+                    else launch();
                 } else {
                     const auto& brute_force = static_cast<const BruteForce&>(structure);
                     launch_range(queue, kernels.brute_force, n, most, values..., scene, batch.rays, batch.skip,

@@ -92,6 +92,7 @@ class FaultyQueue final : public setka::backend::Queue, public std::enable_share
         ++waits_;
         real_->stop_timings();
     }
+    [[nodiscard]] std::shared_ptr<setka::backend::Memory> launch_counts() override { return real_->launch_counts(); }
     [[nodiscard]] std::uint64_t library_scan_bytes(std::uint32_t n) override {
         return real_->library_scan_bytes(n);
     }

@@ -131,7 +131,48 @@ TEST_P(Rays, OfAnyNumber) {
     }
 }
 
-/// Batches so large that a launch has whole teams and halved ones, and that a queue which may be stopped traces in several launches.
+/// About as many as teams have at once, with half of their members and with all of them, and some more.
+TEST_P(Rays, OfAsManyAsTeamsHave) {
+    setka::Queue queue = device().make_queue();
+    const setka::Scene host_scene = support::ball(200);
+    const setka::DeviceScene device_scene(queue, host_scene);
+    const auto grid = setka::make_grid_builder()->build(queue, device_scene);
+    const std::size_t members = device().info().compute_units * std::size_t(28) * 32;  // as Tracer launches
+    const auto rays = support::adversarial_rays(oracle::make_world(host_scene), members + members / 4 + 1, 47);
+    const auto expected = setka::Tracer({.step = setka::GridStep::BranchFree}).closest_hit(queue, grid, rays);
+    for (const std::size_t count : {members / 2 - 1, members / 2, members / 2 + 1, members - 1, members, members + 1, members + 33, rays.size()}) {
+        SCOPED_TRACE(std::to_string(count) + " rays");
+        const auto some = std::span(rays).first(count);
+        const auto expected_of_some = std::span(expected).first(count);
+        EXPECT_TRUE(support::same_hits(some, expected_of_some, setka::Tracer().closest_hit(queue, grid, some)));
+        EXPECT_TRUE(support::same_occlusion(some, expected_of_some, setka::Tracer().any_hit(queue, grid, some)));
+    }
+}
+
+/// Launches of two queues run side by side: what the teams of one have taken is nothing to the other.
+TEST_P(Rays, OfTwoQueues) {
+    setka::Queue queue = device().make_queue(), other = device().make_queue();
+    const setka::Scene host_scene = support::ball(200);
+    const setka::DeviceScene device_scene(queue, host_scene);
+    const auto grid = setka::make_grid_builder()->build(queue, device_scene);
+    const auto rays = support::adversarial_rays(oracle::make_world(host_scene), 200000, 48);
+    const auto expected = setka::Tracer({.step = setka::GridStep::BranchFree}).closest_hit(queue, grid, rays);
+    const setka::RayBatch batch(queue.upload(std::span(rays), "rays"));
+    const std::vector<setka::Hit> no_hits(rays.size(), {-1, -1, -1, 0x5e7ca, 0x5e7ca});
+    constexpr int times = 4;
+    std::vector<setka::Buffer<setka::Hit>> hits;
+    for (int i = 0; i < 2 * times; ++i) hits.push_back(queue.upload(std::span(no_hits), "hits"));
+    queue.finish();
+    for (int i = 0; i < times; ++i) {
+        setka::Tracer().closest_hit(queue, grid, batch, hits[static_cast<std::size_t>(i)]);
+        setka::Tracer().closest_hit(other, grid, batch, hits[static_cast<std::size_t>(times + i)]);
+    }
+    queue.finish();
+    other.finish();
+    for (const auto& of_one_launch : hits) EXPECT_TRUE(support::same_hits(rays, expected, queue.download(of_one_launch)));
+}
+
+/// Batches so large that teams take rays again and again, and that a queue which may be stopped traces in several launches.
 TEST_P(Rays, OfManyInSeveralLaunches) {
     setka::Queue queue = device().make_queue();
     const setka::Scene host_scene = support::ball(200);

@@ -115,6 +115,12 @@ CudaQueue::CudaQueue(std::shared_ptr<CudaDevice> device, std::shared_ptr<CudaPoo
     check(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking), "making a stream on " + device_->info().id);
     stream_.reset(stream);
     staging_ = make_pinned(staging_bytes);
+    auto counts = std::make_shared<CudaMemory>(launch_count_words * sizeof(std::uint32_t), "launch counts");
+    void* pointer = nullptr;
+    check(cudaMalloc(&pointer, counts->size_bytes()), "making a queue on " + device_->info().id);
+    counts->buffer.reset(pointer);
+    fill(*counts, 0, counts->size_bytes());
+    launch_counts_ = std::move(counts);
 }
 
 CudaQueue::~CudaQueue() {

@@ -39,6 +39,7 @@ class CudaQueue final : public Queue {
     void begin_stage(std::string_view stage) override { clock_.begin_stage(stage); }
     [[nodiscard]] std::vector<StageTime> take_timings() override;
     void stop_timings() override;
+    [[nodiscard]] std::shared_ptr<Memory> launch_counts() override { return launch_counts_; }
     [[nodiscard]] std::uint64_t library_scan_bytes(std::uint32_t n) override;
     void library_scan(Memory& counts, Memory& offsets, Memory& total, Memory& scratch, std::uint32_t n) override;
     [[nodiscard]] std::uint64_t library_sort_bytes(std::uint32_t n, std::uint32_t key_bits) override;
@@ -69,6 +70,7 @@ class CudaQueue final : public Queue {
     StagingRing<CudaEvent> staged_;
     StageClock<Span> clock_;
     std::vector<CudaEvent> spare_events_;
+    std::shared_ptr<Memory> launch_counts_;
 };
 
 }  // namespace setka::backend

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "backend/opencl/opencl_queue.hpp"
 
+#include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstring>
@@ -89,6 +90,12 @@ OpenClQueue::OpenClQueue(std::shared_ptr<OpenClDevice> device, std::shared_ptr<O
     guarded("making a queue on " + device_->info().id, [&] {
         queue_ = untimed_ = cl::CommandQueue(device_->context(), device_->device());
         for (const char* name : kernel_names) kernels_.emplace_back(device_->program(), name);
+        if (device_->team_size() > 1) {
+            std::array<cl_uint, launch_count_words> zeros{};
+            auto counts = std::make_shared<OpenClMemory>(sizeof zeros, "launch counts");
+            counts->buffer = cl::Buffer(device_->context(), CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR, sizeof zeros, zeros.data());
+            launch_counts_ = std::move(counts);
+        }
     });
 }
 

@@ -34,6 +34,7 @@ class OpenClQueue final : public Queue {
     void begin_stage(std::string_view stage) override { clock_.begin_stage(stage); }
     [[nodiscard]] std::vector<StageTime> take_timings() override;
     void stop_timings() override;
+    [[nodiscard]] std::shared_ptr<Memory> launch_counts() override { return launch_counts_; }
 
   private:
     void collect_events();
@@ -53,6 +54,7 @@ class OpenClQueue final : public Queue {
     StagingRing<cl::Event> staged_;
     cl::Buffer answer_;  ///< for read_few(), made when it is first needed; mapped for good
     void* answer_bytes_ = nullptr;
+    std::shared_ptr<Memory> launch_counts_;
     bool is_idle_ = true;  ///< nothing was enqueued since something waited for all there was
 };
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /**
- * What does one work-item of a query do with the walks? On GPUs it walks with one of rays `first` to n - 1 as a member of its team; where
- * there is none for it, it only helps. On CPUs it walks with those at SK_ITEM_RAYS places (trace/tiles.h).
+ * What does one work-item of a query do with the walks? On GPUs it is a member of a team: of a list it walks with one ray after the other, of a picture
+ * with one; where there is none for it, it only helps. On CPUs it walks with those at SK_ITEM_RAYS places (trace/tiles.h).
  */
 #ifndef SETKA_DEVICE_GRID_TRACE_H
 #define SETKA_DEVICE_GRID_TRACE_H
@@ -14,7 +14,7 @@
 #include "device/grid/walk_lanes.h"
 #endif
 
-/** A ray on its way, as a member of a team has it. */
+/** A member's ray: what does not change on its way. */
 typedef struct sk_member_ray {
     sk_u32 number, skip;
     sk_working_ray ray;
@@ -84,24 +84,25 @@ SK_FUNCTION void sk_write_hits(const sk_flight* f, sk_u32 count, sk_trace_params
     }
 }
 
-SK_FUNCTION void sk_trace_closest(SK_SHARED sk_team* team, sk_u32 n, sk_u32 first, SetkaGridHeader grid,
-                                  sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
-                                  SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL SetkaHit* hits,
-                                  sk_grid_tables tables) {
+typedef sk_team sk_list_team;
+
+SK_FUNCTION void sk_trace_closest(SK_SHARED sk_list_team* team, sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
+                                  SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL SetkaHit* hits,
+                                  sk_grid_tables tables, SK_GLOBAL sk_u32* counts) {
     sk_flight flights[SK_FLIGHTS];
     const sk_u32 i = first + sk_global_id() * SK_ITEM_RAYS;
     const sk_u32 count = sk_trace_flights(flights, n, i, grid, params, rays, skip, tables, 0);
-    (void)team;
+    (void)team, (void)counts;
     for (sk_u32 f = 0u; f < count; ++f) sk_write_hits(flights + f, sk_min_u32(n - (i + f * SK_WIDTH), SK_WIDTH), params, tables, hits);
 }
 
-SK_FUNCTION void sk_trace_any(SK_SHARED sk_team* team, sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
-                              SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
-                              SK_GLOBAL sk_u32* occluded, sk_grid_tables tables) {
+SK_FUNCTION void sk_trace_any(SK_SHARED sk_list_team* team, sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
+                              SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL sk_u32* occluded,
+                              sk_grid_tables tables, SK_GLOBAL sk_u32* counts) {
     sk_flight flights[SK_FLIGHTS];
     const sk_u32 i = first + sk_global_id() * SK_ITEM_RAYS;
     const sk_u32 count = sk_trace_flights(flights, n, i, grid, params, rays, skip, tables, 1);
-    (void)team;
+    (void)team, (void)counts;
     for (sk_u32 f = 0u; f < count; ++f) {
         sk_i32 triangle[SK_WIDTH], number[SK_WIDTH];
         sk_store_i(flights[f].number, number);
@@ -113,40 +114,111 @@ SK_FUNCTION void sk_trace_any(SK_SHARED sk_team* team, sk_u32 n, sk_u32 first, S
 
 #else
 
-/**
- * The place of a member's ray among rays `first` to n - 1 of a list, or n. What begins last should not be what ends last, so that the last teams are
- * two, with half of the rays each, and end sooner: there is room for them on the device then.
- */
-SK_FUNCTION sk_u32 sk_place_in_list(sk_trace_params params, sk_u32 n, sk_u32 first) {
 #if SK_TEAM > 1
-    const sk_u32 share = SK_TEAM / 2u, team = sk_group_id(), member = sk_local_id();
-    const sk_u32 teams = (n - first + SK_TEAM - 1u) / SK_TEAM, whole = teams - sk_min_u32(teams, params.halved_teams);
-    if (team < whole) return first + team * SK_TEAM + member;
-    return member < share ? first + whole * SK_TEAM + (team - whole) * share + member : n;
+
+/** So many members have to be without a ray before their team takes more: to prepare one takes as long as to prepare many. */
+#define SK_IDLE (SK_TEAM * 5u / 8u)
+
+/** What the members of a team share that traces a list. */
+typedef struct sk_list_team {
+    sk_team walk;
+    sk_u32 takers; /* bit m: member m is without a ray */
+    sk_u32 before; /* so many rays were taken before */
+} sk_list_team;
+
+/**
+ * Traces rays `first` to n - 1 of a list as one of many teams. Some rays end after few rounds, some after many: where enough members are without one,
+ * the team takes as many of those that no team has yet. Which member of which team traces a ray is a matter of time; what it hits is not. What decides
+ * where loops end is the same for all members: `walkers` and `more`. A round ends with a barrier, behind which nobody reads what members had for it.
+ */
+SK_FUNCTION void sk_trace_list(SK_SHARED sk_list_team* team, sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
+                               SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL SetkaHit* hits,
+                               SK_GLOBAL sk_u32* occluded, sk_grid_tables tables, SK_GLOBAL sk_u32* counts, const int any) {
+    const sk_u32 member = sk_local_id(), teams = sk_group_count();
+    /* Each team begins with as many; where a list is short, that is less than a ray for each member. */
+    const sk_u32 share = sk_min_u32(SK_TEAM, (n - first + teams - 1u) / teams);
+    const sk_u32 common = first + share * teams; /* rays from here on are for whoever takes them */
+    sk_u32 number = member < share ? first + sk_group_id() * share + member : n, phase = 0u;
+    int more = common < n, goes_on, idle = 1;
+    sk_member_ray own;
+    sk_walker walker;
+    if (member == 0u) team->takers = 0u;
+    sk_clear_rounds(&team->walk.round, member);
+    SK_TEAM_BARRIER();
+    do {
+        sk_u32 walkers;
+        if (idle) {
+            own = sk_take_ray(sk_min_u32(number, n - 1u), number < n, params, rays, skip, tables);
+            walker = sk_set_out(grid, own.ray);
+            team->walk.views[member] = sk_viewpoint_of(own.ray);
+        }
+        do {
+            walkers = sk_walkers_of(sk_walk_round(&team->walk, phase, member, grid, params, own.ray, tables, own.skip, &walker, any));
+            phase ^= 1u;
+        } while (walkers > (more ? SK_TEAM - SK_IDLE : 0u));
+        idle = !walker.search.at.walking;
+        if (idle && number < n) {
+            if (any) occluded[number] = walker.walk.best.triangle != SETKA_NO_HIT ? 1u : 0u;
+            else hits[number] = sk_make_hit(params, own.ray, tables.instance_starts, walker.walk.best);
+        }
+        goes_on = more;
+        if (more) {
+            if (idle) sk_team_or(&team->takers, 1u << member);
+            SK_TEAM_BARRIER();
+            const sk_u32 takers = team->takers, wanted = sk_popcount(takers);
+            if (member == 0u) team->before = sk_atomic_add(counts + SK_RAYS_TAKEN, wanted);
+            SK_TEAM_BARRIER();
+            const sk_u32 next = common + team->before;
+            if (member == 0u) team->takers = 0u;
+            if (idle) number = next + sk_popcount(takers & ((1u << member) - 1u));
+            more = next + wanted < n;
+        }
+    } while (goes_on);
+    if (member == 0u && sk_atomic_add(counts + SK_TEAMS_DONE, 1u) == teams - 1u) {
+        sk_atomic_exchange(counts + SK_RAYS_TAKEN, 0u);
+        sk_atomic_exchange(counts + SK_TEAMS_DONE, 0u);
+    }
+}
+
+SK_FUNCTION void sk_trace_closest(SK_SHARED sk_list_team* team, sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
+                                  SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL SetkaHit* hits,
+                                  sk_grid_tables tables, SK_GLOBAL sk_u32* counts) {
+    sk_trace_list(team, n, first, grid, params, rays, skip, hits, (SK_GLOBAL sk_u32*)0, tables, counts, 0);
+}
+
+SK_FUNCTION void sk_trace_any(SK_SHARED sk_list_team* team, sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
+                              SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL sk_u32* occluded,
+                              sk_grid_tables tables, SK_GLOBAL sk_u32* counts) {
+    sk_trace_list(team, n, first, grid, params, rays, skip, (SK_GLOBAL SetkaHit*)0, occluded, tables, counts, 1);
+}
+
 #else
-    (void)params, (void)n;
-    return first + sk_global_id();
+
+typedef sk_team sk_list_team;
+
+SK_FUNCTION void sk_trace_closest(SK_SHARED sk_list_team* team, sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
+                                  SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL SetkaHit* hits,
+                                  sk_grid_tables tables, SK_GLOBAL sk_u32* counts) {
+    const sk_u32 i = first + sk_global_id();
+    (void)counts;
+    if (i < n) {
+        const sk_member_ray own = sk_take_ray(i, 1, params, rays, skip, tables);
+        hits[i] = sk_make_hit(params, own.ray, tables.instance_starts, sk_walk_grid(team, 0u, grid, params, own.ray, tables, own.skip, 0).best);
+    }
+}
+
+SK_FUNCTION void sk_trace_any(SK_SHARED sk_list_team* team, sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
+                              SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL sk_u32* occluded,
+                              sk_grid_tables tables, SK_GLOBAL sk_u32* counts) {
+    const sk_u32 i = first + sk_global_id();
+    (void)counts;
+    if (i < n) {
+        const sk_member_ray own = sk_take_ray(i, 1, params, rays, skip, tables);
+        occluded[i] = sk_walk_grid(team, 0u, grid, params, own.ray, tables, own.skip, 1).best.triangle != SETKA_NO_HIT ? 1u : 0u;
+    }
+}
+
 #endif
-}
-
-SK_FUNCTION void sk_trace_closest(SK_SHARED sk_team* team, sk_u32 n, sk_u32 first, SetkaGridHeader grid,
-                                  sk_trace_params params, SK_GLOBAL const SetkaRay* rays,
-                                  SK_GLOBAL const SetkaPrimitive* skip, SK_GLOBAL SetkaHit* hits,
-                                  sk_grid_tables tables) {
-    const sk_u32 i = sk_place_in_list(params, n, first);
-    const sk_member_ray own = sk_take_ray(sk_min_u32(i, n - 1u), i < n, params, rays, skip, tables);
-    const sk_walk walk = sk_walk_grid(team, sk_local_id() % SK_TEAM, grid, params, own.ray, tables, own.skip, 0);
-    if (i < n) hits[i] = sk_make_hit(params, own.ray, tables.instance_starts, walk.best);
-}
-
-SK_FUNCTION void sk_trace_any(SK_SHARED sk_team* team, sk_u32 n, sk_u32 first, SetkaGridHeader grid, sk_trace_params params,
-                              SK_GLOBAL const SetkaRay* rays, SK_GLOBAL const SetkaPrimitive* skip,
-                              SK_GLOBAL sk_u32* occluded, sk_grid_tables tables) {
-    const sk_u32 i = sk_place_in_list(params, n, first);
-    const sk_member_ray own = sk_take_ray(sk_min_u32(i, n - 1u), i < n, params, rays, skip, tables);
-    const sk_walk walk = sk_walk_grid(team, sk_local_id() % SK_TEAM, grid, params, own.ray, tables, own.skip, 1);
-    if (i < n) occluded[i] = walk.best.triangle != SETKA_NO_HIT ? 1u : 0u;
-}
 
 /** What a member's ray hits, of rays of a picture. */
 SK_FUNCTION sk_best sk_trace_in_picture(SK_SHARED sk_picture_team* team, SetkaGridHeader grid, sk_trace_params params, sk_member_ray own,

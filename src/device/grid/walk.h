@@ -20,7 +20,7 @@
 #define SK_PARALLEL_INVERSE 0x1p90f
 
 /** The most moves that a walk makes before it looks whether others of its team have a list to test. */
-#define SK_TURNS 4u
+#define SK_TURNS 2u
 
 typedef struct sk_walk {
     sk_best best;
@@ -196,6 +196,9 @@ SK_FUNCTION sk_search sk_move_on(SetkaGridHeader grid, sk_grid_tables tables, sk
 #define SK_PAIRS_OF(total) ((total) & 0xffffu)
 #define SK_LISTS_OF(total) ((total) >> 16 & 0xffu)
 
+/** So many members offered something to the round: as many walk. */
+SK_FUNCTION sk_u32 sk_walkers_of(sk_u32 total) { return SK_LISTS_OF(total) + (total >> 24); }
+
 /** A part of a list in the round's row of pairs (ray, triangle): pair p is triangle references[shift + p]. */
 typedef struct SK_ALIGNED(8) sk_part {
     sk_u32 shift;
@@ -291,61 +294,84 @@ SK_FUNCTION void sk_test_pairs(SK_SHARED sk_team* team, sk_u32 phase, sk_u32 mem
     }
 }
 
+/** How far a member's ray has come, and what it has hit. */
+typedef struct sk_walker {
+    sk_search search;
+    float last; /* nothing beyond this parameter is of interest */
+    sk_walk walk;
+} sk_walker;
+
+/** Before the first step. */
+SK_FUNCTION sk_walker sk_set_out(SetkaGridHeader grid, sk_working_ray ray) {
+    const sk_span span = sk_limit(ray);
+    sk_walker r;
+    r.search.at = sk_enter(grid, ray, span);
+    r.search.cube = SK_ENTERED;
+    r.search.list.offset = 0u;
+    r.search.list.count = 0u;
+    r.last = span.w1;
+    r.walk.best = sk_no_hit();
+    r.walk.cost.steps = 0u;
+    r.walk.cost.tests = 0u;
+    return r;
+}
+
 /**
- * Walks the grid as member `member` of a team, past empty space in large steps and past the triangle `skip`. `any`, a compile-time
- * choice of the entry, stops at the first hit. All members have to come here; those without a ray say so in ray.valid. The walk
- * ends: each turn at least one index moves towards its last value, where its exit is out of reach, and none moves back.
+ * One round of a team: each member walks on to its next list, and all test what was found, past the triangle `skip` of each. `any`, a
+ * compile-time choice of the entry, ends a walk at the first hit. All members have to come here; those without a ray do not walk. Behind it is the total
+ * of the offers; a walk ends in the end, as each turn at least one index moves towards its last value, where its exit is out of reach, and none moves back.
  */
+SK_FUNCTION sk_u32 sk_walk_round(SK_SHARED sk_team* team, sk_u32 phase, sk_u32 member, SetkaGridHeader grid, sk_trace_params params,
+                                 sk_working_ray ray, sk_grid_tables tables, sk_u32 skip, sk_walker* walker, const int any) {
+    sk_search search = walker->search;
+    sk_best best = walker->walk.best;
+    if (search.list.count == 0u) {
+        for (sk_u32 turn = 0u; turn < SK_TURNS && search.at.walking && search.list.count == 0u; ++turn) {
+            search = sk_move_on(grid, tables, search, walker->last);
+            walker->walk.cost.steps += (sk_u32)search.at.walking;
+        }
+        walker->walk.cost.tests += search.list.count;
+    }
+    const sk_u32 count = sk_min_u32(search.list.count, SK_ROUND);
+    if (search.at.walking) sk_offer(&team->round, phase, member, search.list.offset, count);
+    team->candidates[member] = 0u;
+    SK_TEAM_BARRIER();
+    const sk_u32 total = team->round.totals[phase];
+    sk_clear_next_round(&team->round, phase, member);
+    sk_test_pairs(team, phase, member, SK_PAIRS_OF(total), tables);
+    SK_TEAM_BARRIER();
+    /* The accurate test is long and few triangles come to it: each member does its own, the first of all of them together. */
+    for (sk_u32 candidates = team->candidates[member]; candidates != 0u; candidates &= candidates - 1u) {
+        const sk_u32 k = sk_popcount((candidates - 1u) & ~candidates);
+        best = sk_test_candidate(tables, params, ray, tables.references[search.list.offset + k], skip, best);
+    }
+    search.list.offset += count;
+    search.list.count -= count;
+    if (best.triangle != SETKA_NO_HIT) {
+        walker->last = sk_min(best.w, walker->last);
+        if (any) {
+            search.at.walking = 0;
+            search.list.count = 0u;
+        }
+    }
+    walker->search = search;
+    walker->walk.best = best;
+    return total;
+}
+
+/** Walks the grid as member `member` of a team. All members have to come here; those without a ray say so in ray.valid. */
 SK_FUNCTION sk_walk sk_walk_grid(SK_SHARED sk_team* team, sk_u32 member, SetkaGridHeader grid, sk_trace_params params,
                                  sk_working_ray ray, sk_grid_tables tables, sk_u32 skip, const int any) {
-    const sk_span span = sk_limit(ray);
-    float last = span.w1; /* nothing beyond this parameter is of interest */
+    sk_walker walker = sk_set_out(grid, ray);
     sk_u32 phase = 0u, total;
-    sk_search search;
-    sk_walk r;
-    search.at = sk_enter(grid, ray, span);
-    search.cube = SK_ENTERED;
-    search.list.offset = 0u;
-    search.list.count = 0u;
-    r.best = sk_no_hit();
-    r.cost.steps = 0u;
-    r.cost.tests = 0u;
     team->views[member] = sk_viewpoint_of(ray);
     sk_clear_rounds(&team->round, member);
     SK_TEAM_BARRIER();
     do {
-        if (search.list.count == 0u) {
-            for (sk_u32 turn = 0u; turn < SK_TURNS && search.at.walking && search.list.count == 0u; ++turn) {
-                search = sk_move_on(grid, tables, search, last);
-                r.cost.steps += (sk_u32)search.at.walking;
-            }
-            r.cost.tests += search.list.count;
-        }
-        const sk_u32 count = sk_min_u32(search.list.count, SK_ROUND);
-        if (search.at.walking) sk_offer(&team->round, phase, member, search.list.offset, count);
-        team->candidates[member] = 0u;
-        SK_TEAM_BARRIER();
-        total = team->round.totals[phase];
-        sk_clear_next_round(&team->round, phase, member);
-        sk_test_pairs(team, phase, member, SK_PAIRS_OF(total), tables);
-        SK_TEAM_BARRIER();
-        /* The accurate test is long and few triangles come to it: each member does its own, the first of all of them together. */
-        for (sk_u32 candidates = team->candidates[member]; candidates != 0u; candidates &= candidates - 1u) {
-            const sk_u32 k = sk_popcount((candidates - 1u) & ~candidates);
-            r.best = sk_test_candidate(tables, params, ray, tables.references[search.list.offset + k], skip, r.best);
-        }
-        search.list.offset += count;
-        search.list.count -= count;
-        if (r.best.triangle != SETKA_NO_HIT) {
-            last = sk_min(r.best.w, span.w1);
-            if (any) {
-                search.at.walking = 0;
-                search.list.count = 0u;
-            }
-        }
+        total = sk_walk_round(team, phase, member, grid, params, ray, tables, skip, &walker, any);
         phase ^= 1u;
     } while (total != 0u);
-    return r;
+    return walker.walk;
 }
 
 /** The same from cell to cell, by the paper's rule. */

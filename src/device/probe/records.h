@@ -30,7 +30,7 @@
 #define SK_MEMBERS_PARAMS(F, U)                                                                     \
     SK_PROBE_THREE(F, lower) SK_PROBE_THREE(F, size) F(extent) F(pad) F(unit)                       \
     U(mask) U(filters) U(skips) U(instance_count) U(triangle_count) U(row_length) U(tiled_rays)    \
-    U(blocks_across) U(blocks_up) U(halved_teams)
+    U(blocks_across) U(blocks_up)
 #define SK_MEMBERS_CAMERA(F, U)                                                                     \
     SK_PROBE_THREE(F, eye) F(step_x) SK_PROBE_THREE(F, right) F(step_y)                             \
     SK_PROBE_THREE(F, up) U(width) SK_PROBE_THREE(F, forward) U(samples_per_axis)

@@ -19,11 +19,15 @@ typedef struct sk_trace_params {
     setka_u32 row_length;     /* rays of a row, if tiled_rays is not 0 */
     setka_u32 tiled_rays;     /* so many rays from the first on are traced tile by tile: whole rows of blocks of tiles, */
     setka_u32 blocks_across, blocks_up; /* as many of them a row, and as many rows */
-    setka_u32 halved_teams;   /* of a list that teams trace: so many of its last teams are two, with half of the rays each */
 } sk_trace_params;
 
 /** How many vectors of SK_WIDTH rays a work-item of a CPU traces, if SK_WIDTH is more than 1 (grid/walk_lanes.h). */
 #define SK_FLIGHTS 8u
+
+/** What the teams of a launch count together that share a list, in words that the launch finds at 0 and leaves so (grid/trace.h). */
+#define SK_RAYS_TAKEN 0 /* besides those that each team has from the start */
+#define SK_TEAMS_DONE 1
+#define SK_LAUNCH_COUNTS 2
 
 /** Rows of a picture that are traced block by block (tiles.h). */
 #define SK_BLOCK_ROWS 8u
