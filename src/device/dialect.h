@@ -19,7 +19,8 @@
  *   SK_UNROLL(times)         before a loop: how often its body is to be written out, 1 or 2
  *   SK_BARRIER()             all work-items of the group; orders local memory; in uniform control flow only
  *   sk_u32 sk_i32 sk_u64     integers
- *   sk_global_id() sk_local_id() sk_group_id() sk_local_size() sk_group_count()   as sk_u32
+ *   sk_global_id() sk_local_id() sk_group_id() sk_local_size()   as sk_u32
+ *   sk_group_count()                                             how many groups the launch has, where SK_TEAM is more than 1
  *   sk_float_bits(f) sk_bits_float(u)                            bit casts
  *   sk_double_bits(d) sk_bits_double(u)                          the same of sk_u64, where SK_DOUBLE
  *   sk_sqrt(f) sk_floor(f)                                       correctly rounded

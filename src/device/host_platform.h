@@ -45,7 +45,6 @@ inline thread_local sk_u32 sk_host_group = 0;
 #define sk_global_id() (sk_host_group)
 #define sk_local_id() (sk_u32{0})
 #define sk_group_id() (sk_host_group)
-#define sk_group_count() (sk_u32{1})
 #define sk_local_size() (sk_u32{1})
 #define sk_float_bits(f) (std::bit_cast<sk_u32>(f))
 #define sk_bits_float(u) (std::bit_cast<float>(u))
