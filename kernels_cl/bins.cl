@@ -20,20 +20,23 @@ SK_KERNEL void bins_fill(sk_u32 n, sk_u32 items, sk_u32 before, sk_u32 most, sk_
 /* Groups of bins: the records of their blocks. */
 SK_KERNEL void bins_tally(sk_u32 n, sk_u32 items, sk_u32 before, sk_u32 most, sk_u32 length, sk_u32 bins, sk_u32 capacity, sk_u32 most_units, sk_u32 runs,
                           sk_u32 together, sk_u32 blocks, SK_GLOBAL const sk_u32* bounds, SK_GLOBAL const sk_u32* pairs,
-                          SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_block* counted, SK_GLOBAL sk_u64* filled, SK_GLOBAL sk_u32* report) {
+                          SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_block* counted, SK_GLOBAL sk_u64* filled, SK_GLOBAL sk_u32* kept,
+                          SK_GLOBAL sk_u32* kept_starts, sk_u32 kept_room, SK_GLOBAL sk_u32* report) {
     const sk_u32 item = sk_global_id();
     if (item < items)
         sk_tally_bins(n, before, most, together, capacity, most_units, blocks, sk_reported_grid(report),
-                      sk_make_binned(bounds, pairs, length, runs, bins), counters + (size_t)item * SK_BIN_CELLS, counted, filled, report);
+                      sk_make_binned(bounds, pairs, length, runs, bins), counters + (size_t)item * SK_BIN_CELLS, counted, filled,
+                      sk_make_kept(kept, kept_starts, kept_room, items), report);
 }
 
 /* Groups of bins: records of blocks and cells, and references. */
 SK_KERNEL void bins_place(sk_u32 n, sk_u32 items, sk_u32 before, sk_u32 most, sk_u32 length, sk_u32 bins, sk_u32 runs, sk_u32 together, SetkaGridHeader grid,
                           SK_GLOBAL const sk_u32* bounds, SK_GLOBAL const sk_u32* pairs, SK_GLOBAL sk_u32* counters,
-                          SK_GLOBAL const sk_block* counted, SK_GLOBAL const sk_u64* filled, SK_GLOBAL sk_block* blocks,
-                          SK_GLOBAL sk_cell_list* lists, SK_GLOBAL sk_u32* references, SK_GLOBAL sk_u32* report) {
+                          SK_GLOBAL const sk_block* counted, SK_GLOBAL const sk_u64* filled, SK_GLOBAL sk_u32* kept,
+                          SK_GLOBAL sk_u32* kept_starts, SK_GLOBAL sk_block* blocks, SK_GLOBAL sk_cell_list* lists,
+                          SK_GLOBAL sk_u32* references, SK_GLOBAL sk_u32* report) {
     const sk_u32 item = sk_global_id();
     if (item < items)
         sk_place_bins(n, before, most, together, grid, sk_make_binned(bounds, pairs, length, runs, bins), counters + (size_t)item * SK_BIN_CELLS,
-                      counted, filled, blocks, lists, references, report);
+                      counted, filled, sk_make_kept(kept, kept_starts, 0u, items), blocks, lists, references, report);
 }

@@ -99,6 +99,7 @@ typedef int8 sk_iN;
 #endif
 #define sk_prefetch(p) __builtin_prefetch(p)
 #define sk_load_f4(p) vload4(0, p)
+#define sk_load_f3(p) (vload3(0, p).xyzz)
 #define sk_store_f4(v, p) vstore4(v, 0, p)
 #define sk_store_i4(v, p) vstore4(v, 0, p)
 #define sk_store_u4(v, p) vstore4(v, 0, p)

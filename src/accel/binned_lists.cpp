@@ -45,6 +45,8 @@ BinRoom divided(const Device& device, std::uint32_t triangles, BinRoom room) {
     room.run_items = prefers_bins(device) ? std::min(room.runs, items) : room.runs;
     room.bin_items = prefers_bins(device) ? std::min(room.bins, items) : room.bins;
     room.together = std::clamp(room.bins / (8 * room.bin_items), 1u, 16u);
+    // Enough for those that are not empty in terrain, spheres, scans and buildings at the default density, as half of it is not.
+    room.kept = prefers_bins(device) ? std::min(room.blocks, triangles / 24 + SK_BIN_BLOCKS) : 0;
     return room;
 }
 
@@ -72,24 +74,25 @@ BinRoom usual_room(const Device& device, std::uint32_t triangles, const GridOpti
 }
 
 std::uint64_t reaches_of(const BinRoom& room) { return std::uint64_t(room.run_items) * room.run * reach_words; }
+std::uint64_t kept_of(const BinRoom& room) { return std::uint64_t(room.kept) * SK_KEPT_WORDS; }
 std::uint64_t bounds_of(const BinRoom& room) { return room.runs * (room.bins + std::uint64_t(1)); }
 
 /// The bytes that both filling and placing hold, world triangles not included.
-std::uint64_t kept_bytes(const Device& device, const BinRoom& room) {
+std::uint64_t common_bytes(const Device& device, const BinRoom& room) {
     return report_bytes + block_sums_bytes(device, room.blocks) +
-           (bounds_of(room) + room.pairs + std::uint64_t(room.bin_items) * SK_BIN_CELLS + 2 * std::uint64_t(room.bins) +
+           (bounds_of(room) + room.pairs + std::uint64_t(room.bin_items) * SK_BIN_CELLS + 3 * std::uint64_t(room.bins) +
             room.blocks * block_words) *
                word;
 }
 
 /// The bytes that filling holds, world triangles not included.
 std::uint64_t fill_bytes(const Device& device, const BinRoom& room) {
-    return kept_bytes(device, room) + reaches_of(room) * word;
+    return common_bytes(device, room) + (reaches_of(room) + kept_of(room)) * word;
 }
 
 /// Whether filling fits the budget beside the world's triangles, and each of its tables one allocation.
 bool fits_filling(const GridLimits& limits, const Device& device, const WorldGeometry& geometry, const BinRoom& room) {
-    for (const std::uint64_t words : {std::uint64_t(room.pairs), reaches_of(room), room.blocks * block_words, bounds_of(room),
+    for (const std::uint64_t words : {std::uint64_t(room.pairs), reaches_of(room), kept_of(room), room.blocks * block_words, bounds_of(room),
                                       std::uint64_t(room.bin_items) * SK_BIN_CELLS})
         if (!limits.fits_an_allocation(words)) return false;
     return limits.fits(geometry.triangles.size_bytes() + fill_bytes(device, room));
@@ -136,9 +139,11 @@ BinnedCount enqueue_bins(Queue& queue, const WorldGeometry& geometry, const Buff
     queue.impl().begin_stage("blocks");
     count.counters = queue.make_buffer<std::uint32_t>(std::uint64_t(room.bin_items) * SK_BIN_CELLS, "counters of bins");
     count.filled = queue.make_buffer<std::uint64_t>(room.bins, "filled blocks of bins");
+    count.kept = queue.make_buffer<std::uint32_t>(kept_of(room), "counts of cells");
+    count.starts = queue.make_buffer<std::uint32_t>(room.bins, "where counts of bins are kept");
     count.blocks = queue.make_buffer<std::uint32_t>(room.blocks * block_words, "counted blocks");
     launch_bins(queue, Kernel::bins_tally, room.bins, count, room.pairs, most, room.runs, room.together, room.blocks, count.bounds, count.pairs,
-                count.counters, count.blocks, count.filled, report);
+                count.counters, count.blocks, count.filled, count.kept, count.starts, room.kept, report);
     count.block_sums = enqueue_block_sums(queue, count.blocks, report);
     return count;
 }
@@ -200,7 +205,10 @@ std::optional<BinnedCount> finish_bins(Queue& queue, const WorldGeometry& geomet
         header.reference_count = static_cast<std::uint32_t>(totals.pairs);
         count.cells = totals.cells;
         count.longest_list = totals.longest_list;
-        return limits.fits(world + binned_bytes(device, header, count));
+        const auto fits_with_tables = [&] { return limits.fits(world + binned_bytes(device, header, count)); };
+        if (fits_with_tables()) return true;
+        count.kept = {};  // placing does without
+        return fits_with_tables();
     };
     const bool is_exact = count.room.pairs == totals.binned_pairs && count.room.blocks == block_count(header);
     if (!has_space() && (is_exact || !fill_again(totals.binned_pairs) || !has_space())) return {};
@@ -213,8 +221,8 @@ std::uint64_t started_bytes(const Device& device, const BinnedCount& started) {
 }
 
 std::uint64_t binned_bytes(const Device& device, const ::SetkaGridHeader& header, const BinnedCount& count) {
-    return kept_bytes(device, count.room) +
-           (block_count(header) * block_words + count.cells * cell_words + header.reference_count) * word;
+    return common_bytes(device, count.room) +
+           (count.kept.size() + block_count(header) * block_words + count.cells * cell_words + header.reference_count) * word;
 }
 
 CompactTables build_binned(Queue& queue, const ::SetkaGridHeader& header, BinnedCount count) {
@@ -226,7 +234,8 @@ CompactTables build_binned(Queue& queue, const ::SetkaGridHeader& header, Binned
     enqueue_block_starts(queue, count.block_sums, count.blocks);
     queue.impl().begin_stage("lists");
     launch_bins(queue, Kernel::bins_place, bin_count(header), count, count.room.runs, count.room.together, header, count.bounds, count.pairs,
-                count.counters, count.blocks, count.filled, tables.blocks, tables.cells, tables.references, count.report);
+                count.counters, count.blocks, count.filled, count.kept, count.starts, tables.blocks, tables.cells,
+                tables.references, count.report);
     tables.longest_list = count.longest_list;
     return tables;
 }

@@ -21,6 +21,7 @@ struct BinRoom {
     std::uint32_t run_items = 0;  ///< work-items that share the runs
     std::uint32_t bin_items = 0;  ///< the same for bins
     std::uint32_t together = 0;   ///< bins that one of them takes at a time
+    std::uint32_t kept = 0;       ///< blocks whose cells' counts are kept
 };
 
 /// What counting leaves for placing.
@@ -35,6 +36,8 @@ struct BinnedCount {
     Buffer<std::uint32_t> pairs;
     Buffer<std::uint32_t> counters;  ///< of a bin, for each work-item
     Buffer<std::uint64_t> filled;    ///< a bit for each block of a bin
+    Buffer<std::uint32_t> kept;      ///< counts of cells, for placing; none where there is no space beside the tables
+    Buffer<std::uint32_t> starts;    ///< where those of a bin are kept
     Buffer<std::uint32_t> blocks;    ///< counted ones; a grid's own are made of them
     Buffer<std::uint64_t> block_sums;
 };

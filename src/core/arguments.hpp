@@ -25,7 +25,7 @@ struct Argument {
 /// The arguments of one launch. Buffers must outlive the enqueueing, not the execution.
 class Arguments {
   public:
-    static constexpr std::size_t max_count = 18;
+    static constexpr std::size_t max_count = 20;
 
     template <typename... Ts>
     explicit Arguments(const Ts&... values) {

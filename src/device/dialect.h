@@ -33,7 +33,7 @@
  *   sk_fN sk_iN sk_f4 sk_u4  SK_WIDTH floats, as many sk_i32, 4 floats, 4 sk_u32
  *   sk_make_f(a, …) sk_make_i(a, …) sk_make_u4(a, …) sk_lane(v, k)   k is a constant
  *   sk_prefetch(p)                                               what p points to will be read or written soon
- *   sk_load_f4(p) sk_store_f4(v, p)                              global memory, aligned as one number is
+ *   sk_load_f4(p) sk_load_f3(p) sk_store_f4(v, p)                global memory, aligned as one number is; the fourth of three is whatever comes
  *   sk_store_u4(v, p) sk_store_i4(v, p)                          the same; 4 sk_i32, as a shuffle gives them
  *   sk_store_f(v, p) sk_store_i(v, p) sk_load_i(p)               of SK_WIDTH, in private memory too
  *   sk_same_f4(a)                                                four times a

@@ -71,6 +71,7 @@ static inline sk_f4 sk_load_f4(const float* p) {
     std::memcpy(&r, p, sizeof r);
     return r;
 }
+static inline sk_f4 sk_load_f3(const float* p) { return sk_f4{p[0], p[1], p[2], p[2]}; }
 static inline void sk_store_f4(sk_f4 v, float* p) { std::memcpy(p, &v, sizeof v); }
 static inline sk_f4 sk_same_f4(float a) { return sk_f4{a, a, a, a}; }
 static inline void sk_store_f(sk_fN v, float* p) { std::memcpy(p, &v, sizeof v); }

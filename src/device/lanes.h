@@ -29,6 +29,11 @@ SK_FUNCTION sk_fN sk_same_f(float a) { return SK_FLOATS(SK_A); }
 SK_FUNCTION sk_iN sk_same_i(sk_i32 a) { return SK_INTS(SK_A); }
 #undef SK_A
 
+/** Each lane's own number. */
+#define SK_LANE(k) (k)
+SK_FUNCTION sk_iN sk_lane_numbers(void) { return SK_INTS(SK_LANE); }
+#undef SK_LANE
+
 /** Where the mask is set a, else b. */
 SK_FUNCTION sk_fN sk_select_f(sk_iN mask, sk_fN a, sk_fN b) { return mask ? a : b; }
 SK_FUNCTION sk_iN sk_select_i(sk_iN mask, sk_iN a, sk_iN b) { return mask ? a : b; }
@@ -135,10 +140,29 @@ SK_FUNCTION sk_columns sk_load_columns(SK_GLOBAL const float* base, const sk_u32
     return sk_turn_rows(SK_ROWS(SK_ROW, 0), SK_ROWS(SK_ROW, 1), SK_ROWS(SK_ROW, 2), SK_ROWS(SK_ROW, 3));
 #undef SK_ROW
 }
-SK_FUNCTION sk_fN sk_load_column(SK_GLOBAL const float* base, const sk_u32 stride) {
-#define SK_AT(k) base[(k) * stride]
-    return SK_FLOATS(SK_AT);
-#undef SK_AT
+
+/** Nine numbers of each lane. */
+typedef struct sk_nine_columns {
+    sk_columns first, next;
+    sk_fN last;
+} sk_nine_columns;
+
+/** From base[9 * at] on. To read the last one by one would take longer than as the fourth of a row. */
+SK_FUNCTION sk_nine_columns sk_gather9(SK_GLOBAL const float* base, sk_iN at) {
+    sk_nine_columns r;
+    r.first = sk_gather4(base, at, 9u);
+    r.next = sk_gather4(base + 4, at, 9u);
+    r.last = sk_gather4(base + 5, at, 9u).d;
+    return r;
+}
+
+/** From base[9 * k] on of lane k. */
+SK_FUNCTION sk_nine_columns sk_load_nine_columns(SK_GLOBAL const float* base) {
+    sk_nine_columns r;
+    r.first = sk_load_columns(base, 9u);
+    r.next = sk_load_columns(base + 4, 9u);
+    r.last = sk_load_columns(base + 5, 9u).d;
+    return r;
 }
 
 #endif

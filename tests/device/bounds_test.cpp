@@ -136,6 +136,27 @@ TEST_P(Bounds, HoldNoNegativeZero) {
     }
 }
 
+/// An identity is no matter of most of its entries: instances whose transforms differ from it in one of the twelve, beside each other and beside one
+/// that leaves triangles where they are.
+TEST_P(Bounds, EachEntryOfATransformCounts) {
+    setka::Queue queue = shaped_device().make_queue();
+    support::Random random(6);
+    constexpr int entries = 12;
+    std::vector<float> values(values_a_triangle * support::sized(301u, 31u));
+    for (float& value : values) value = static_cast<float>(random.below(100)) + 1;
+    setka::Scene scene = scene_of(values);
+    for (int changed = 0; changed < entries; ++changed) scene.instances.emplace_back().transform.rows[changed] += 2;
+    const auto structure = setka::BruteForce::build(queue, setka::DeviceScene(queue, scene));
+    std::vector<float> expected;  // small integers: no rounding
+    for (const setka::Instance& instance : scene.instances)
+        for (std::size_t i = 0; i < values.size(); i += 3)
+            for (std::size_t row = 0; row < 3; ++row) {
+                const float* m = &instance.transform.rows[4 * row];
+                expected.push_back(m[0] * values[i] + m[1] * values[i + 1] + m[2] * values[i + 2] + m[3]);
+            }
+    EXPECT_EQ(queue.download(structure.geometry().triangles), expected);
+}
+
 /// What building from these triangles is refused with; empty if it is not.
 std::string refusal(setka::Queue& queue, const std::vector<float>& values, const setka::Matrix34& transform) {
     try {

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -138,9 +139,33 @@ struct Blocks {
     }
 };
 
+/// Room for the counts of so many blocks, with some behind it that nothing may touch.
+class Kept {
+  public:
+    explicit Kept(sk_u32 room, sk_u32 bins = FewCells::bins) : room_(room), words_((room + 1) * SK_KEPT_WORDS, guard), starts_(bins, guard) {}
+
+    sk_kept_counts counts(sk_u32 items = 1) { return sk_make_kept(words_.data(), starts_.data(), room_, items); }
+    [[nodiscard]] bool has(sk_u32 bin) const { return starts_[bin] != SK_NOT_KEPT; }
+    [[nodiscard]] bool is_within() const {
+        return std::all_of(words_.end() - SK_KEPT_WORDS, words_.end(), [](sk_u32 word) { return word == guard; });
+    }
+
+  private:
+    sk_u32 room_;
+    std::vector<sk_u32> words_, starts_;
+};
+
+/// Triangles a run, room for counts, and how many of the two bins' are kept: of lists of some 130 triangles as there is room, of some that have more
+/// than a byte counts none.
+class BinsWithRoom : public testing::TestWithParam<std::tuple<sk_u32, sk_u32, sk_u32>> {};
+INSTANTIATE_TEST_SUITE_P(, BinsWithRoom,
+                         testing::Values(std::tuple(1001, 2 * SK_BIN_BLOCKS, 2), std::tuple(1001, SK_BIN_BLOCKS, 1), std::tuple(1001, SK_BIN_BLOCKS - 1, 0),
+                                         std::tuple(1001, 0, 0), std::tuple(3001, 2 * SK_BIN_BLOCKS, 0)));
+
 /// Each list has its triangles of every run, in ascending order, whichever run came first.
-TEST(Bins, ListsHaveTheTrianglesOfEveryRun) {
-    constexpr sk_u32 length = 3001, bins = FewCells::bins;
+TEST_P(BinsWithRoom, ListsHaveTheTrianglesOfEveryRun) {
+    constexpr sk_u32 bins = FewCells::bins;
+    const auto [length, kept_room, kept_bins] = GetParam();
     const std::vector<sk_u32> order{3, 0, 6, 2, 1, 5, 4};
     const auto runs = static_cast<sk_u32>(order.size());
     const FewCells scene(runs * length - 77);
@@ -158,7 +183,14 @@ TEST(Bins, ListsHaveTheTrianglesOfEveryRun) {
     std::vector<sk_u32> counters(SK_BIN_CELLS), references(scene.pairs());
     std::vector<sk_block> counted(count), blocks(count);
     std::vector<sk_u64> filled(bins);
-    for (sk_u32 b = 0; b < bins; ++b) sk_count_bin(b, grid, all, counters.data(), counted.data(), filled.data());
+    Kept kept(kept_room);
+    sk_kept_room own{0, 0};
+    for (sk_u32 b = 0; b < bins; ++b) {
+        sk_count_bin(b, grid, all, counters.data(), counted.data(), filled.data(), kept.counts(), &own, report.data());
+        EXPECT_EQ(kept.has(b), b < kept_bins) << "bin " << b;
+    }
+    EXPECT_TRUE(kept.is_within());
+    std::fill(counters.begin(), counters.end(), guard);
     for (sk_u32 b = 0; b < count; ++b) {
         const sk_u32 x = b % in_blocks.x, y = b / in_blocks.x % in_blocks.y, z = b / in_blocks.x / in_blocks.y;
         ASSERT_EQ(filled[x / 4] >> sk_bit_in_block(x, y, z) & 1u, sk_mask_of(counted[b]) != 0u ? 1u : 0u) << "block " << b;
@@ -167,7 +199,9 @@ TEST(Bins, ListsHaveTheTrianglesOfEveryRun) {
     ASSERT_EQ(laid_out.places, scene.pairs());
     std::vector<sk_cell_list> lists(laid_out.cells);
     for (sk_u32 b = 0; b < bins; ++b)
-        sk_place_bin(b, grid, all, counters.data(), laid_out.counted.data(), filled.data(), blocks.data(), lists.data(), references.data());
+        sk_place_bin(b, grid, all, counters.data(), laid_out.counted.data(), filled.data(), kept.counts(), blocks.data(), lists.data(),
+                     references.data());
+    sk_u32 longest = 0;
     for (sk_u32 c = 0; c < grid.cell_count; ++c) {
         const sk_u32 x = c % 20, y = c / 20 % 16, z = c / 320, bit = sk_bit_in_block(x, y, z);
         const sk_block block = blocks[sk_block_of(in_blocks, x, y, z)];
@@ -176,19 +210,111 @@ TEST(Bins, ListsHaveTheTrianglesOfEveryRun) {
         if (expected.empty()) continue;
         const sk_cell_list list = lists[block.first + sk_rank_of(block, bit)];
         ASSERT_EQ(std::vector(&references[list.offset], &references[list.offset] + list.count), expected) << "cell " << x << ' ' << y << ' ' << z;
-        EXPECT_GT(list.count, 100u);
+        EXPECT_GT(list.count, length / 30);
+        longest = std::max(longest, list.count);
+    }
+    EXPECT_EQ(longest > SK_KEPT_MOST, length == 3001);
+}
+
+/// The longest list whose count fits a byte, and the shortest whose does not.
+TEST(Bins, CountsAreKeptUpToAByte) {
+    for (const sk_u32 length : {SK_KEPT_MOST, SK_KEPT_MOST + 1}) {
+        FewCells scene(0);
+        scene.grid.triangle_count = length;
+        for (sk_u32 i = 0; i < length; ++i) scene.triangles.insert(scene.triangles.end(), {3.25f, 7.5f, 9.5f, 3.75f, 7.5f, 9.5f, 3.25f, 7.625f, 9.5f});
+        std::vector<sk_u32> report(SK_REPORT, 0), pairs(length), counters(SK_BIN_CELLS), references(length);
+        const std::vector<sk_u32> bounds = fill(scene, length, {0}, pairs, length, report);
+        const sk_binned all = sk_make_binned(bounds.data(), pairs.data(), length, 1, FewCells::bins);
+        const sk_u32 count = sk_block_count(sk_block_dims(sk_cell_dims(scene.grid)));
+        std::vector<sk_block> counted(count), blocks(count);
+        std::vector<sk_u64> filled(FewCells::bins);
+        Kept kept(SK_BIN_BLOCKS);
+        sk_kept_room own{0, 0};
+        sk_count_bin(0, scene.grid, all, counters.data(), counted.data(), filled.data(), kept.counts(), &own, report.data());
+        EXPECT_EQ(kept.has(0), length == SK_KEPT_MOST);
+        std::fill(counters.begin(), counters.end(), guard);
+        const Blocks laid_out(counted.data(), count);
+        ASSERT_EQ(laid_out.cells, 1u);
+        sk_cell_list list{};
+        sk_place_bin(0, scene.grid, all, counters.data(), laid_out.counted.data(), filled.data(), kept.counts(), blocks.data(), &list, references.data());
+        EXPECT_EQ(list.offset, 0u);
+        EXPECT_EQ(list.count, length);
+        for (sk_u32 i = 0; i < length; ++i) ASSERT_EQ(references[i], i);
     }
 }
 
-/// Work-items that share runs and bins, over several launches, make what runs and bins one by one do: whatever each of them gets, and whether it takes
-/// all that it can or one at most.
+/// Bins of any cells, some with lists that are too long, one after the other: what is kept of one neither shifts nor meets what is kept of the next.
+TEST(Bins, CountsOfAnyCellsAreKept) {
+    constexpr sk_u32 bins = 24;
+    support::Random random(17);
+    SetkaGridHeader grid{};
+    grid.dims[0] = bins * SK_BIN_SIDE - 7;
+    grid.dims[1] = grid.dims[2] = SK_BIN_SIDE;
+    std::vector<std::vector<sk_u32>> lists(std::size_t{bins} * SK_BIN_CELLS);  // of cells in their bins
+    std::vector<sk_u32> bounds(bins + 1, 0), pairs;
+    sk_u32 triangle = 0, filled_blocks = 0;
+    for (sk_u32 b = 0; b < bins; ++b) {
+        const sk_u32 one_in = b % 4 == 0 ? 2 : b % 4 == 1 ? 60 : b % 4 == 2 ? 1000 : 0;  // all blocks filled, some, few, none
+        for (sk_u32 cell = 0; cell < SK_BIN_CELLS; ++cell) {
+            const sk_u32 x = b * SK_BIN_SIDE + cell % SK_BIN_SIDE;
+            if (one_in == 0 || random.below(one_in) != 0 || x >= grid.dims[0]) continue;
+            const sk_u32 count = b % 5 == 4 && random.below(20) == 0 ? SK_KEPT_MOST + 1 : 1 + random.below(SK_KEPT_MOST);
+            for (sk_u32 k = 0; k < count; ++k) {
+                pairs.push_back(sk_pair_of(cell, triangle % SK_LONGEST_RUN));
+                lists[std::size_t{b} * SK_BIN_CELLS + cell].push_back(triangle++ % SK_LONGEST_RUN);
+            }
+        }
+        bounds[b + 1] = static_cast<sk_u32>(pairs.size());
+    }
+    const sk_binned all = sk_make_binned(bounds.data(), pairs.data(), SK_LONGEST_RUN, 1, bins);
+    const sk_dims in_blocks = sk_block_dims(sk_cell_dims(grid));
+    const sk_u32 count = sk_block_count(in_blocks);
+    for (const sk_u32 room : {0u, 1u, 2u, 5u, 9u, bins}) {
+        SCOPED_TRACE(room);
+        Kept kept(room * SK_BIN_BLOCKS, bins);
+        std::vector<sk_u32> report(SK_REPORT, 0), counters(SK_BIN_CELLS), references(pairs.size());
+        std::vector<sk_block> counted(count), blocks(count);
+        std::vector<sk_u64> filled(bins);
+        sk_kept_room own{0, 0};
+        sk_u32 kept_bins = 0;
+        filled_blocks = 0;
+        for (sk_u32 b = 0; b < bins; ++b) {
+            sk_count_bin(b, grid, all, counters.data(), counted.data(), filled.data(), kept.counts(2), &own, report.data());
+            kept_bins += filled[b] != 0 && kept.has(b);
+            filled_blocks += sk_bit_count(filled[b]);
+        }
+        EXPECT_GE(kept_bins, std::min(room / 2, 10u)) << "chunks are two bins' where there is room for as many";
+        EXPECT_TRUE(kept.is_within());
+        std::fill(counters.begin(), counters.end(), guard);
+        const Blocks laid_out(counted.data(), count);
+        std::vector<sk_cell_list> records(laid_out.cells);
+        for (sk_u32 b = 0; b < bins; ++b)
+            sk_place_bin(b, grid, all, counters.data(), laid_out.counted.data(), filled.data(), kept.counts(2), blocks.data(), records.data(),
+                         references.data());
+        for (sk_u32 b = 0; b < bins; ++b)
+            for (sk_u32 cell = 0; cell < SK_BIN_CELLS; ++cell) {
+                const sk_u32 x = b * SK_BIN_SIDE + cell % SK_BIN_SIDE, y = cell / SK_BIN_SIDE % SK_BIN_SIDE, z = cell / SK_BIN_SIDE / SK_BIN_SIDE;
+                const std::vector<sk_u32>& expected = lists[std::size_t{b} * SK_BIN_CELLS + cell];
+                if (expected.empty()) continue;
+                const sk_block block = blocks[sk_block_of(in_blocks, x, y, z)];
+                const sk_cell_list list = records[block.first + sk_rank_of(block, sk_bit_in_block(x, y, z))];
+                ASSERT_EQ(std::vector(&references[list.offset], &references[list.offset] + list.count), expected) << "bin " << b << " cell " << cell;
+            }
+    }
+    EXPECT_GT(filled_blocks, bins / 4 * SK_BIN_BLOCKS);
+}
+
+/// Work-items that share runs and bins, over several launches, make what runs and bins one by one do: whatever each of them gets, whether it takes
+/// all that it can or one at most, and whether it finds room for its counts.
 TEST(Bins, AreSharedByWorkItems) {
     constexpr sk_u32 length = 100, runs = 13, bins = FewCells::bins, spare = 200;
     const FewCells scene(runs * length - 7);
     const sk_u32 count = sk_block_count(sk_block_dims(sk_cell_dims(scene.grid))), room = scene.pairs();
     std::vector<std::vector<sk_u32>> all_references;
     for (const sk_u32 most : {1u, ~0u})
-        for (const sk_u32 together : {1u, 2u}) {
+        for (const sk_u32 turn : {0u, 1u, 2u, 3u}) {
+            const sk_u32 together = turn % 2 + 1;
+            Kept kept(turn / 2 * 2 * SK_BIN_BLOCKS);
             std::vector<sk_u32> report(SK_REPORT, 0), pairs(room), bounds(runs * (bins + 1), guard), counters(SK_BIN_CELLS), references(room);
             std::vector<sk_reach> reaches(length);
             std::vector<sk_u64> filled(bins);
@@ -210,15 +336,17 @@ TEST(Bins, AreSharedByWorkItems) {
             const sk_binned all = sk_make_binned(bounds.data(), pairs.data(), length, runs, bins);
             share((bins + together - 1) / together, [&](sk_u32 n, sk_u32 before) {
                 sk_tally_bins(n, before, most, together, room, 1000, count + spare, scene.grid, all, counters.data(), counted.data(), filled.data(),
-                              report.data());
+                              kept.counts(2), report.data());
             });
+            EXPECT_EQ(kept.has(0) + kept.has(1), turn < 2 ? 0 : 2);
+            EXPECT_TRUE(kept.is_within());
             for (sk_u32 b = count; b < count + spare; ++b) ASSERT_EQ(sk_mask_of(counted[b]) + counted[b].clearance, 0u) << "beyond the grid";
             const Blocks laid_out(counted.data(), count);
             ASSERT_EQ(laid_out.places, room);
             std::vector<sk_cell_list> lists(laid_out.cells);
             share((bins + together - 1) / together, [&](sk_u32 n, sk_u32 before) {
-                sk_place_bins(n, before, most, together, scene.grid, all, counters.data(), laid_out.counted.data(), filled.data(), blocks.data(),
-                              lists.data(), references.data(), report.data());
+                sk_place_bins(n, before, most, together, scene.grid, all, counters.data(), laid_out.counted.data(), filled.data(), kept.counts(2),
+                              blocks.data(), lists.data(), references.data(), report.data());
             });
             ASSERT_EQ(report[SK_TOTAL_TAKEN], taken);
             all_references.push_back(references);

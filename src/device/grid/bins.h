@@ -296,6 +296,18 @@ SK_FUNCTION int sk_is_binned(SK_GLOBAL const sk_u32* report, sk_u32 capacity, sk
     return report[SK_TOTAL_LONG] < most_units && report[SK_TOTAL_BINNED_HIGH] == 0u && report[SK_TOTAL_BINNED_LOW] <= capacity;
 }
 
+/** The pairs of a bin in run r, if there is one, will be needed soon. They lie far from those of the run before, and processors foresee a line only when they
+ * have read some: the first ones are asked for. */
+SK_FUNCTION void sk_await_pairs(sk_binned all, sk_u32 r, sk_u32 bin) {
+#if SK_WIDTH > 1
+    if (r < all.runs && all.runs >= SK_FAR_TRIANGLES / all.length) {
+        SK_GLOBAL const sk_u32* bounds = sk_bounds_in_bin(all, r, bin);
+        const sk_u32 end = sk_min_u32(bounds[1], bounds[0] + 256u);
+        for (sk_u32 p = bounds[0]; p < end; p += 16u) sk_prefetch(all.pairs + p);
+    }
+#endif
+}
+
 /** Counts the pairs of a bin in its cells; how many these are. Where there are none, counters are left as they are. */
 SK_FUNCTION sk_u32 sk_count_in_bin(sk_binned all, sk_u32 bin, SK_GLOBAL sk_u32* counters) {
     sk_u32 count = 0u;
@@ -309,10 +321,42 @@ SK_FUNCTION sk_u32 sk_count_in_bin(sk_binned all, sk_u32 bin, SK_GLOBAL sk_u32* 
             for (sk_u32 c = 0u; c < SK_BIN_CELLS / 4u; ++c) ((SK_GLOBAL sk_four_counts*)counters)[c] = none;
         }
         count += end - p;
+        sk_await_pairs(all, r + 1u, bin);
         for (; p < end; ++p) counters[sk_cell_of_pair(all.pairs[p])] += 1u;
     }
     return count;
 }
+
+/**
+ * What tallying has counted, for placing: SK_KEPT_WORDS for each block that is not empty, one after the other along x, then y, then z of a bin, the first
+ * of which is in the place starts[bin]. That is SK_NOT_KEPT where there was no room or a list is longer than SK_KEPT_MOST. Work-items take room for `chunk`
+ * blocks at a time.
+ */
+typedef struct sk_kept_counts {
+    SK_GLOBAL sk_u32* words; /* null: none are kept */
+    SK_GLOBAL sk_u32* starts;
+    sk_u32 room, chunk; /* blocks */
+} sk_kept_counts;
+#define SK_NOT_KEPT 0xffffffffu
+
+/** Chunks are those of a few bins, so that little of one is left over, and no more than each of the work-items can have. */
+SK_FUNCTION sk_kept_counts sk_make_kept(SK_GLOBAL sk_u32* words, SK_GLOBAL sk_u32* starts, sk_u32 room, sk_u32 items) {
+    sk_kept_counts r;
+    r.words = words;
+    r.starts = starts;
+    r.room = room;
+    r.chunk = sk_max_u32(1u, sk_min_u32(4u, room / SK_BIN_BLOCKS / items)) * SK_BIN_BLOCKS;
+    return r;
+}
+/** That of bit `bit` of the block at `place`. */
+SK_FUNCTION sk_u32 sk_kept_count(sk_kept_counts kept, sk_u32 place, sk_u32 bit) {
+    return kept.words[(size_t)place * SK_KEPT_WORDS + bit / 4u] >> bit % 4u * 8u & SK_KEPT_MOST;
+}
+
+/** What a work-item has taken of the room for counts, and not used yet. */
+typedef struct sk_kept_room {
+    sk_u32 next, end;
+} sk_kept_room;
 
 /** The first block of a bin, and how many along each axis are inside the grid. */
 typedef struct sk_bin_blocks {
@@ -372,9 +416,7 @@ typedef struct sk_counted_lanes {
 
 /** From the counters of the first lane's first cell on, each below 2^31 as all pairs of a bin are together. */
 SK_FUNCTION sk_counted_lanes sk_count_lanes(SK_GLOBAL const sk_u32* counters) {
-#define SK_LANE(k) (k)
-    const sk_iN in_block = SK_INTS(SK_LANE) & 3;
-#undef SK_LANE
+    const sk_iN in_block = sk_lane_numbers() & 3;
     sk_iN rows = sk_same_i(0), pairs = sk_same_i(0), low, high;
     sk_counted_lanes r;
     r.longest = sk_same_i(0);
@@ -392,9 +434,46 @@ SK_FUNCTION sk_counted_lanes sk_count_lanes(SK_GLOBAL const sk_u32* counters) {
     return r;
 }
 
+/** Whether there is room for the counts of a bin. A work-item that was refused asks no more, so that what all have asked for stays a number. */
+SK_FUNCTION int sk_has_kept_room(sk_kept_room* own, sk_kept_counts kept, SK_GLOBAL sk_u32* report) {
+    if (own->next == SK_NOT_KEPT) return 0;
+    if (own->end - own->next < SK_BIN_BLOCKS) {
+        const sk_u32 first = sk_atomic_add(report + SK_TOTAL_KEPT, kept.chunk);
+        if (first != own->end) own->next = first;
+        own->end = first + kept.chunk;
+        if (own->end > kept.room) own->next = SK_NOT_KEPT;
+    }
+    return own->next != SK_NOT_KEPT;
+}
+
+/**
+ * Keeps the counts of those of a row of blocks that are not empty, from place `next` on; the next place. Empty ones are written too, and then over: a bin
+ * that has some does not fill its room.
+ */
+SK_FUNCTION sk_u32 sk_keep_lanes(SK_GLOBAL const sk_u32* counters, sk_u32 filled, SK_GLOBAL sk_u32* words, sk_u32 next) {
+    const sk_iN in_block = sk_lane_numbers() & 3;
+    const sk_u32 blocks = sk_every_fourth(filled);
+    size_t places[SK_WIDTH / 4u];
+    for (sk_u32 b = 0u; b < SK_WIDTH / 4u; ++b) {
+        places[b] = (size_t)next * SK_KEPT_WORDS;
+        next += blocks >> b & 1u;
+    }
+    for (sk_u32 z = 0u; z < 4u; ++z) {
+        sk_iN rows = sk_same_i(0); /* four words a block */
+        for (sk_u32 y = 0u; y < 4u; ++y) {
+            const sk_iN counts = sk_load_i((SK_GLOBAL const sk_i32*)(counters + SK_BIN_SIDE * (y + SK_BIN_SIDE * z)));
+            rows = sk_select_i(in_block == (sk_i32)y, sk_bits_of_four(counts << in_block * 8), rows);
+        }
+#define SK_STORE_BLOCK(k) sk_store_i4(sk_shuffle(rows, rows, (k), (k) + 1, (k) + 2, (k) + 3), (SK_GLOBAL sk_i32*)(words + (places[(k) / 4] + 4u * z)))
+        SK_EACH_FOUR(SK_STORE_BLOCK);
+#undef SK_STORE_BLOCK
+    }
+    return next;
+}
+
 /** The records of a bin's blocks as sk_count_block() makes them, and which of them are not empty; how long the longest list is. */
 SK_FUNCTION sk_u32 sk_count_bin(sk_u32 bin, SetkaGridHeader grid, sk_binned all, SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_block* counted,
-                                SK_GLOBAL sk_u64* filled) {
+                                SK_GLOBAL sk_u64* filled, sk_kept_counts kept, sk_kept_room* own_room, SK_GLOBAL sk_u32* report) {
     const sk_dims dims = sk_block_dims(sk_cell_dims(grid));
     const sk_bin_blocks own = sk_blocks_of_bin(dims, sk_bin_dims(sk_cell_dims(grid)), bin);
     sk_u32 lengths[SK_WIDTH], longest = 0u;
@@ -404,14 +483,18 @@ SK_FUNCTION sk_u32 sk_count_bin(sk_u32 bin, SetkaGridHeader grid, sk_binned all,
     of_four.words = sk_same_i(0);
     of_four.filled = 0u;
     const sk_u32 pairs = sk_count_in_bin(all, bin, counters);
+    const int keeps = pairs != 0u && sk_has_kept_room(own_room, kept, report);
+    const sk_u32 start = keeps ? own_room->next : pairs != 0u ? SK_NOT_KEPT : 0u;
     for (sk_u32 z = 0u; z < own.count.z; ++z)
         for (sk_u32 y = 0u; y < own.count.y; ++y)
             for (sk_u32 x = 0u; x < own.count.x; x += SK_WIDTH / 4u) {
                 const sk_u32 b = sk_number_at(dims, own.first.x + x, own.first.y + y, own.first.z + z);
                 const sk_u32 blocks = sk_min_u32(own.count.x - x, SK_WIDTH / 4u);
                 if (pairs != 0u) {
-                    of_four = sk_count_lanes(counters + sk_cell_in_bin(4u * x, 4u * y, 4u * z));
+                    SK_GLOBAL const sk_u32* first = counters + sk_cell_in_bin(4u * x, 4u * y, 4u * z);
+                    of_four = sk_count_lanes(first);
                     longest_lists = sk_max_i(longest_lists, of_four.longest);
+                    if (keeps && of_four.filled != 0u) own_room->next = sk_keep_lanes(first, of_four.filled, kept.words, own_room->next);
                 }
                 own_filled |= (sk_u64)sk_every_fourth(of_four.filled) << sk_bit_in_block(x, y, z);
                 if (blocks == SK_WIDTH / 4u) {
@@ -425,6 +508,7 @@ SK_FUNCTION sk_u32 sk_count_bin(sk_u32 bin, SetkaGridHeader grid, sk_binned all,
     filled[bin] = own_filled;
     sk_store_lanes(longest_lists, lengths);
     for (sk_u32 k = 0u; k < SK_WIDTH; ++k) longest = sk_max_u32(longest, lengths[k]);
+    kept.starts[bin] = longest <= SK_KEPT_MOST ? start : SK_NOT_KEPT;
     return longest;
 }
 
@@ -440,7 +524,7 @@ SK_FUNCTION sk_tally sk_tally_in_bin(SK_GLOBAL const sk_u32* counters) {
 
 /** The records of a bin's blocks as sk_count_block() makes them, and which of them are not empty; how long the longest list is. */
 SK_FUNCTION sk_u32 sk_count_bin(sk_u32 bin, SetkaGridHeader grid, sk_binned all, SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_block* counted,
-                                SK_GLOBAL sk_u64* filled) {
+                                SK_GLOBAL sk_u64* filled, sk_kept_counts kept, sk_kept_room* own_room, SK_GLOBAL sk_u32* report) {
     const sk_dims dims = sk_block_dims(sk_cell_dims(grid));
     const sk_bin_blocks own = sk_blocks_of_bin(dims, sk_bin_dims(sk_cell_dims(grid)), bin);
     sk_u64 own_filled = 0u;
@@ -457,6 +541,8 @@ SK_FUNCTION sk_u32 sk_count_bin(sk_u32 bin, SetkaGridHeader grid, sk_binned all,
                 counted[b] = sk_counted_block(tally);
             }
     filled[bin] = own_filled;
+    kept.starts[bin] = SK_NOT_KEPT; /* only lanes keep counts */
+    (void)own_room, (void)report;
     return longest;
 }
 
@@ -468,18 +554,22 @@ SK_FUNCTION sk_u32 sk_count_bin(sk_u32 bin, SetkaGridHeader grid, sk_binned all,
  */
 SK_FUNCTION void sk_tally_bins(sk_u32 n, sk_u32 before, sk_u32 most, sk_u32 together, sk_u32 capacity, sk_u32 most_units, sk_u32 blocks, SetkaGridHeader grid,
                                sk_binned all, SK_GLOBAL sk_u32* counters, SK_GLOBAL sk_block* counted, SK_GLOBAL sk_u64* filled,
-                               SK_GLOBAL sk_u32* report) {
+                               sk_kept_counts kept, SK_GLOBAL sk_u32* report) {
     const sk_u32 blocks_of_grid = sk_block_count(sk_block_dims(sk_cell_dims(grid)));
     const sk_u32 bins_of_grid = sk_block_count(sk_bin_dims(sk_cell_dims(grid)));
     const sk_u32 groups = (all.bins + together - 1u) / together, share = (blocks + groups - 1u) / groups;
     const int has_all = sk_is_binned(report, capacity, most_units) && blocks_of_grid <= blocks;
     const sk_u32 bins = has_all ? sk_min_u32(bins_of_grid, all.bins) : 0u, of_grid = has_all ? blocks_of_grid : 0u;
     sk_u32 longest = 0u;
+    sk_kept_room own_room;
+    own_room.next = own_room.end = 0u;
     for (sk_u32 k = 0u; k < most; ++k) {
         const sk_u32 group = sk_take_next(report, before);
         if (group >= n) break;
-        for (sk_u32 b = group * together; b < sk_min_u32(group * together + together, bins); ++b)
-            longest = sk_max_u32(longest, sk_count_bin(b, grid, all, counters, counted, filled));
+        for (sk_u32 b = group * together; b < sk_min_u32(group * together + together, bins); ++b) {
+            const sk_u32 longest_of_bin = sk_count_bin(b, grid, all, counters, counted, filled, kept, &own_room, report);
+            longest = sk_max_u32(longest, longest_of_bin);
+        }
         for (sk_u32 b = sk_max_u32(group * share, of_grid); b < sk_min_u32(group * share + share, blocks); ++b)
             counted[b] = sk_counted_block(sk_no_tally());
     }
@@ -544,14 +634,17 @@ SK_FUNCTION sk_u32 sk_clearance_in(sk_rings rings, sk_u32 bit) {
 
 /** The lists of a bin: records of blocks and cells, and references. */
 SK_FUNCTION void sk_place_bin(sk_u32 bin, SetkaGridHeader grid, sk_binned all, SK_GLOBAL sk_u32* counters,
-                              SK_GLOBAL const sk_block* counted, SK_GLOBAL const sk_u64* filled, SK_GLOBAL sk_block* blocks,
+                              SK_GLOBAL const sk_block* counted, SK_GLOBAL const sk_u64* filled, sk_kept_counts kept, SK_GLOBAL sk_block* blocks,
                               SK_GLOBAL sk_cell_list* lists, SK_GLOBAL sk_u32* references) {
     const sk_dims dims = sk_block_dims(sk_cell_dims(grid)), bin_dims = sk_bin_dims(sk_cell_dims(grid));
     const sk_bin_blocks own = sk_blocks_of_bin(dims, bin_dims, bin);
     const sk_rings rings = sk_rings_of(bin_dims, bin, filled);
     sk_await_blocks(dims, own, counted);
     sk_await_blocks(dims, own, blocks);
-    (void)sk_count_in_bin(all, bin, counters);
+    const sk_u32 start = kept.starts[bin], runs = filled[bin] != 0u ? all.runs : 0u;
+    const int is_kept = kept.words != (SK_GLOBAL sk_u32*)0 && start != SK_NOT_KEPT;
+    sk_u32 place_kept = start;
+    if (!is_kept) (void)sk_count_in_bin(all, bin, counters);
     for (sk_u32 z = 0u; z < own.count.z; ++z)
         for (sk_u32 y = 0u; y < own.count.y; ++y)
             for (sk_u32 x = 0u; x < own.count.x; ++x) {
@@ -564,21 +657,23 @@ SK_FUNCTION void sk_place_bin(sk_u32 bin, SetkaGridHeader grid, sk_binned all, S
                 for (sk_u64 rest = sk_mask_of(block); rest != 0u; rest &= rest - 1u) {
                     const sk_u32 bit = sk_lowest_bit(rest);
                     SK_GLOBAL sk_u32* counter = counters + (corner + sk_bin_step(bit));
-                    list.count = *counter;
+                    list.count = is_kept ? sk_kept_count(kept, place_kept, bit) : *counter;
                     *counter = list.offset;
                     lists[r] = list;
                     list.offset += list.count;
                     r += 1u;
                 }
+                place_kept += sk_mask_of(block) != 0u ? 1u : 0u;
 #if SK_WIDTH > 1
                 for (sk_u32 place = block.clearance; place < list.offset; place += 16u) sk_prefetch(references + place);
 #endif
                 block.clearance = sk_mask_of(block) != 0u ? 0u : sk_clearance_in(rings, sk_bit_in_block(x, y, z));
                 blocks[b] = block;
             }
-    for (sk_u32 r = 0u; r < all.runs; ++r) {
+    for (sk_u32 r = 0u; r < runs; ++r) {
         SK_GLOBAL const sk_u32* bounds = sk_bounds_in_bin(all, r, bin);
         const sk_u32 end = bounds[1], before = r * all.length;
+        if (is_kept) sk_await_pairs(all, r + 1u, bin);
         for (sk_u32 p = bounds[0]; p < end; ++p) {
             SK_GLOBAL sk_u32* counter = counters + sk_cell_of_pair(all.pairs[p]);
             const sk_u32 place = *counter;
@@ -590,14 +685,14 @@ SK_FUNCTION void sk_place_bin(sk_u32 bin, SetkaGridHeader grid, sk_binned all, S
 
 /** The same for the bins that the work-item gets, of n groups of `together` bins. */
 SK_FUNCTION void sk_place_bins(sk_u32 n, sk_u32 before, sk_u32 most, sk_u32 together, SetkaGridHeader grid, sk_binned all, SK_GLOBAL sk_u32* counters,
-                               SK_GLOBAL const sk_block* counted, SK_GLOBAL const sk_u64* filled, SK_GLOBAL sk_block* blocks,
+                               SK_GLOBAL const sk_block* counted, SK_GLOBAL const sk_u64* filled, sk_kept_counts kept, SK_GLOBAL sk_block* blocks,
                                SK_GLOBAL sk_cell_list* lists, SK_GLOBAL sk_u32* references, SK_GLOBAL sk_u32* report) {
     const sk_u32 bins = sk_block_count(sk_bin_dims(sk_cell_dims(grid)));
     for (sk_u32 k = 0u; k < most; ++k) {
         const sk_u32 group = sk_take_next(report, before);
         if (group >= n) break;
         for (sk_u32 b = group * together; b < sk_min_u32(group * together + together, bins); ++b)
-            sk_place_bin(b, grid, all, counters, counted, filled, blocks, lists, references);
+            sk_place_bin(b, grid, all, counters, counted, filled, kept, blocks, lists, references);
     }
 }
 

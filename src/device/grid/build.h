@@ -71,60 +71,88 @@ SK_FUNCTION sk_extremes4 sk_both4(sk_extremes4 a, sk_extremes4 b) {
     return r;
 }
 
-/** A point by the columns of a matrix. */
+/** The columns of a matrix, and whether it leaves every point where it is. */
 typedef struct sk_columns4 {
     sk_f4 x, y, z, w;
+    int is_identity;
 } sk_columns4;
-SK_FUNCTION sk_f4 sk_transform_point4(sk_columns4 by, SK_GLOBAL const float* p) {
+SK_FUNCTION sk_columns4 sk_columns_of(SK_GLOBAL const float* m) {
+    const sk_f4 row_x = sk_load_f4(m), row_y = sk_load_f4(m + 4), row_z = sk_load_f4(m + 8);
+    const sk_f4 columns01 = sk_shuffle(row_x, row_y, 0, 4, 1, 5), columns23 = sk_shuffle(row_x, row_y, 2, 6, 3, 7);
+    sk_columns4 r;
+    r.x = sk_shuffle(columns01, row_z, 0, 1, 4, 4);
+    r.y = sk_shuffle(columns01, row_z, 2, 3, 5, 5);
+    r.z = sk_shuffle(columns23, row_z, 0, 1, 6, 6);
+    r.w = sk_shuffle(columns23, row_z, 2, 3, 7, 7);
+    r.is_identity = 1;
+    for (sk_u32 k = 0u; k < 12u; ++k) r.is_identity = r.is_identity && m[k] == (k % 5u == 0u ? 1.0f : 0.0f);
+    return r;
+}
+
+/** sk_transform_point(), x, y and z side by side. By an identity, a compile-time choice, it adds nothing but zeros to what is finite, and leaves no -0. */
+SK_FUNCTION sk_f4 sk_transform_point4(sk_columns4 by, SK_GLOBAL const float* p, const int is_identity) {
     const sk_f4 zero = sk_same_f4(0.0f);
+    if (is_identity) return sk_load_f3(p) + zero;
     const sk_f4 sum = ((by.x * sk_same_f4(p[0]) + by.y * sk_same_f4(p[1])) + by.z * sk_same_f4(p[2])) + by.w;
     return sum == zero ? zero : sum;
 }
 
-/**
- * Stage 1 of triangles first to end - 1, by a work-item alone: the sums of sk_transform_point(), those of x, y and z side by side. What is the same
- * for all triangles of an instance is found once.
- */
+/** The triangles between the one that is transformed and the one whose vertex is asked for. */
+#define SK_TRIANGLES_AHEAD 32
+
+/** What was seen of the first, second and third vertices, so that none waits for what is seen of another. */
+typedef struct sk_seen_vertices {
+    sk_extremes4 a, b, c;
+} sk_seen_vertices;
+
+/** Stage 1 of the triangles from `triangle` to `end`, whose vertices `index` names. */
+SK_FUNCTION sk_seen_vertices sk_transform_vertices(sk_columns4 by, SK_GLOBAL const float* vertices, SK_GLOBAL const sk_u32* index, SK_GLOBAL float* triangle,
+                                                   SK_GLOBAL const float* end, sk_seen_vertices seen, const int is_identity) {
+    for (; triangle != end; triangle += 9, index += 3) {
+        /* In grids of vertices the others were seen with a triangle before. */
+        if (end - triangle > 9 * SK_TRIANGLES_AHEAD) sk_prefetch(vertices + (size_t)index[3 * SK_TRIANGLES_AHEAD + 2] * 3u);
+        const sk_f4 p = sk_transform_point4(by, vertices + (size_t)index[0] * 3u, is_identity);
+        const sk_f4 q = sk_transform_point4(by, vertices + (size_t)index[1] * 3u, is_identity);
+        const sk_f4 r = sk_transform_point4(by, vertices + (size_t)index[2] * 3u, is_identity);
+        sk_store_f4(p, triangle); /* the next vertex comes over the fourth */
+        sk_store_f4(q, triangle + 3);
+        triangle[6] = sk_lane(r, 0);
+        triangle[7] = sk_lane(r, 1);
+        triangle[8] = sk_lane(r, 2);
+        seen.a = sk_see4(seen.a, p);
+        seen.b = sk_see4(seen.b, q);
+        seen.c = sk_see4(seen.c, r);
+    }
+    return seen;
+}
+
+/** Stage 1 of triangles first to end - 1, by a work-item alone. What is the same for all triangles of an instance is found once. */
 SK_FUNCTION sk_extremes sk_transform_run(sk_u32 first, sk_u32 end, sk_u32 instance_count, SK_GLOBAL const float* positions,
                                          SK_GLOBAL const sk_u32* indices, SK_GLOBAL const SetkaInstance* instances,
                                          SK_GLOBAL const sk_u32* instance_starts, SK_GLOBAL float* triangles,
                                          SK_GLOBAL sk_u32* first_bad) {
     const float infinity = sk_bits_float(0x7f800000u);
-    sk_extremes4 a, b, c; /* one a vertex, so that none waits for what is seen of another */
-    a.low = sk_same_f4(infinity);
-    a.high = sk_same_f4(-infinity);
-    a.odd = sk_same_f4(0.0f);
-    b = c = a;
+    sk_seen_vertices all;
     sk_extremes seen;
+    all.a.low = sk_same_f4(infinity);
+    all.a.high = sk_same_f4(-infinity);
+    all.a.odd = sk_same_f4(0.0f);
+    all.b = all.c = all.a;
     for (sk_u32 i = first; i < end;) {
         SK_GLOBAL const SetkaInstance* instance = instances + sk_find_segment(instance_starts, instance_count, i);
         SK_GLOBAL const sk_u32* index = indices + (size_t)(instance->first_index + (i - instance->first_triangle)) * 3u;
         SK_GLOBAL const float* vertices = positions + (size_t)instance->first_vertex * 3u;
-        SK_GLOBAL const float* m = instance->matrix;
-        const sk_f4 row_x = sk_load_f4(m), row_y = sk_load_f4(m + 4), row_z = sk_load_f4(m + 8);
-        sk_columns4 by;
-        const sk_f4 columns01 = sk_shuffle(row_x, row_y, 0, 4, 1, 5), columns23 = sk_shuffle(row_x, row_y, 2, 6, 3, 7);
-        by.x = sk_shuffle(columns01, row_z, 0, 1, 4, 4);
-        by.y = sk_shuffle(columns01, row_z, 2, 3, 5, 5);
-        by.z = sk_shuffle(columns23, row_z, 0, 1, 6, 6);
-        by.w = sk_shuffle(columns23, row_z, 2, 3, 7, 7);
+        const sk_columns4 by = sk_columns_of(instance->matrix);
         const sk_u32 stop = sk_min_u32(end, instance_starts[(instance - instances) + 1]);
-        for (; i < stop; ++i, index += 3) {
-            SK_GLOBAL float* triangle = triangles + (size_t)i * 9u;
-            const sk_f4 p = sk_transform_point4(by, vertices + (size_t)index[0] * 3u);
-            const sk_f4 q = sk_transform_point4(by, vertices + (size_t)index[1] * 3u);
-            const sk_f4 r = sk_transform_point4(by, vertices + (size_t)index[2] * 3u);
-            sk_store_f4(p, triangle); /* the next vertex comes over the fourth */
-            sk_store_f4(q, triangle + 3);
-            triangle[6] = sk_lane(r, 0);
-            triangle[7] = sk_lane(r, 1);
-            triangle[8] = sk_lane(r, 2);
-            a = sk_see4(a, p);
-            b = sk_see4(b, q);
-            c = sk_see4(c, r);
-        }
+        SK_GLOBAL float* triangle = triangles + (size_t)i * 9u;
+        SK_GLOBAL const float* after = triangles + (size_t)stop * 9u;
+        if (by.is_identity)
+            all = sk_transform_vertices(by, vertices, index, triangle, after, all, 1);
+        else
+            all = sk_transform_vertices(by, vertices, index, triangle, after, all, 0);
+        i = stop;
     }
-    a = sk_both4(a, sk_both4(b, c));
+    const sk_extremes4 a = sk_both4(all.a, sk_both4(all.b, all.c));
     if (!(sk_lane(a.odd, 0) == 0.0f && sk_lane(a.odd, 1) == 0.0f && sk_lane(a.odd, 2) == 0.0f)) {
         sk_u32 i = first, finite = 1u;
         while (i < end && finite != 0u) {

@@ -26,11 +26,18 @@
 /** Lists longer than this are copied by one work-item a reference, others by one a list. */
 #define SK_LONG_LIST 1024u
 
-/** Bins (bins.h): cells along each axis and in all. */
+/** Bins (bins.h): cells along each axis and in all, and blocks. */
 #define SK_BIN_SIDE 16u
 #define SK_BIN_CELLS 4096u
+#define SK_BIN_BLOCKS 64u
+/** Counts of a block's cells that are kept from tallying to placing, a byte each: words, and the longest list that may have one. */
+#define SK_KEPT_WORDS 16u
+#define SK_KEPT_MOST 255u
 /** Triangles that a pair in a bin can tell apart, in the bits that a cell's number in its bin leaves. */
 #define SK_LONGEST_RUN 1048576u
+
+/** So many triangles, 9 MB, are more than a core's own caches hold, so that it pays to ask ahead for what is made of them. */
+#define SK_FAR_TRIANGLES 0x40000u
 
 /**
  * What a build's kernels tell each other and the host, in one table of SK_REPORT words that are 0 at first: totals, what the transform found, and
@@ -46,6 +53,7 @@
 #define SK_TOTAL_PIECES 7u     /* of lists that are too long for one work-item */
 #define SK_TOTAL_CUT 8u        /* pieces cut so far */
 #define SK_TOTAL_TAKEN 4u      /* in builds with bins, which list no rows: what work-items have taken of runs and bins so far */
+#define SK_TOTAL_KEPT 0u       /* there too, until blocks are added up: blocks whose counts there is room to keep, taken so far */
 #define SK_TOTAL_BINNED_LOW 7u /* pairs in bins: in builds with these, which cut no list into pieces */
 #define SK_TOTAL_BINNED_HIGH 8u
 #define SK_TOTALS 9u           /* so many words are totals */

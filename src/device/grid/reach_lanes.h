@@ -20,23 +20,20 @@ SK_FUNCTION sk_vec3N sk_to_cells_lanes(SetkaGridHeader grid, sk_fN x, sk_fN y, s
                       (z - grid.origin[2]) * grid.inverse_cell_size);
 }
 
-SK_FUNCTION sk_points_lanes sk_make_points(SetkaGridHeader grid, sk_columns a, sk_columns b, sk_fN last) {
+SK_FUNCTION sk_points_lanes sk_make_points(SetkaGridHeader grid, sk_nine_columns v) {
     sk_points_lanes r;
-    r.p0 = sk_to_cells_lanes(grid, a.a, a.b, a.c);
-    r.p1 = sk_to_cells_lanes(grid, a.d, b.a, b.b);
-    r.p2 = sk_to_cells_lanes(grid, b.c, b.d, last);
+    r.p0 = sk_to_cells_lanes(grid, v.first.a, v.first.b, v.first.c);
+    r.p1 = sk_to_cells_lanes(grid, v.first.d, v.next.a, v.next.b);
+    r.p2 = sk_to_cells_lanes(grid, v.next.c, v.next.d, v.last);
     return r;
 }
 
 /** Of triangles with these numbers, or of SK_WIDTH from the first on. */
-SK_FUNCTION sk_points_lanes sk_gather_cell_points(SetkaGridHeader grid, SK_GLOBAL const float* triangles,
-                                                  sk_iN numbers) {
-    return sk_make_points(grid, sk_gather4(triangles, numbers, 9u), sk_gather4(triangles + 4, numbers, 9u),
-                          sk_gather_f(triangles + 8, numbers, 9u));
+SK_FUNCTION sk_points_lanes sk_gather_cell_points(SetkaGridHeader grid, SK_GLOBAL const float* triangles, sk_iN numbers) {
+    return sk_make_points(grid, sk_gather9(triangles, numbers));
 }
 SK_FUNCTION sk_points_lanes sk_load_cell_points_lanes(SetkaGridHeader grid, SK_GLOBAL const float* triangles) {
-    return sk_make_points(grid, sk_load_columns(triangles, 9u), sk_load_columns(triangles + 4, 9u),
-                          sk_load_column(triangles + 8, 9u));
+    return sk_make_points(grid, sk_load_nine_columns(triangles));
 }
 
 /** sk_cell(): a bound that is no number is in cell 0 here too. */
@@ -454,6 +451,7 @@ SK_FUNCTION sk_u32 sk_units_of(sk_iN most, sk_u32 lanes) {
 /** The reaches of triangles first to end - 1, and in how many cells large ones are at least, in units of SK_LONG_ROW. */
 SK_FUNCTION sk_u64 sk_find_reaches(sk_u32 first, sk_u32 end, SetkaGridHeader grid, SK_GLOBAL const float* triangles,
                                    SK_GLOBAL sk_reach* reaches) {
+    const sk_iN lane = sk_lane_numbers();
     sk_waiting flats, twos, threes, fours;
     sk_u64 units = 0u;
     flats.count = 0u;
@@ -462,9 +460,7 @@ SK_FUNCTION sk_u64 sk_find_reaches(sk_u32 first, sk_u32 end, SetkaGridHeader gri
     fours.count = 0u;
     for (sk_u32 start = first; start < end; start += SK_WIDTH) {
         const sk_u32 count = sk_min_u32(end - start, SK_WIDTH), lanes = (2u << (count - 1u)) - 1u;
-#define SK_NEXT(k) (sk_i32)(start + ((k) < count ? (k) : 0u))
-        const sk_iN numbers = SK_INTS(SK_NEXT);
-#undef SK_NEXT
+        const sk_iN numbers = (lane & (lane < (sk_i32)count)) + (sk_i32)start;
         const sk_points_lanes points = count == SK_WIDTH ? sk_load_cell_points_lanes(grid, triangles + (size_t)start * 9u)
                                                          : sk_gather_cell_points(grid, triangles, numbers);
         const sk_boxes_lanes boxes = sk_boxes_of(grid, points);

@@ -25,11 +25,7 @@ SK_FUNCTION sk_wide_triangle sk_widen(sk_cell_triangle t) {
 }
 
 /** first + 0 to first + SK_WIDTH - 1 */
-SK_FUNCTION sk_iN sk_numbers_from(sk_u32 first) {
-#define SK_LANE_NUMBER(k) (sk_i32)(k)
-    return sk_same_i((sk_i32)first) + SK_INTS(SK_LANE_NUMBER);
-#undef SK_LANE_NUMBER
-}
+SK_FUNCTION sk_iN sk_numbers_from(sk_u32 first) { return sk_same_i((sk_i32)first) + sk_lane_numbers(); }
 
 /** sk_enter_row() of SK_WIDTH rows from the first on. */
 typedef struct sk_rows_lanes {

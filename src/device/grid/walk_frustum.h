@@ -151,19 +151,18 @@ SK_FUNCTION sk_triangle_boxes sk_gather_triangle_boxes(SetkaGridHeader grid, sk_
 #define SK_NUMBER(k) (sk_i32)row[k]
     const sk_iN number = SK_INTS(SK_NUMBER);
 #undef SK_NUMBER
-    const sk_columns p = sk_gather4(tables.triangles, number, 9u), q = sk_gather4(tables.triangles + 4, number, 9u);
-    const sk_fN last = sk_gather_f(tables.triangles + 8, number, 9u);
+    const sk_nine_columns c = sk_gather9(tables.triangles, number);
     sk_fN v[3][3]; /* of each axis, of each vertex */
     sk_triangle_boxes r;
-    v[0][0] = p.a - grid.origin[0];
-    v[1][0] = p.b - grid.origin[1];
-    v[2][0] = p.c - grid.origin[2];
-    v[0][1] = p.d - grid.origin[0];
-    v[1][1] = q.a - grid.origin[1];
-    v[2][1] = q.b - grid.origin[2];
-    v[0][2] = q.c - grid.origin[0];
-    v[1][2] = q.d - grid.origin[1];
-    v[2][2] = last - grid.origin[2];
+    v[0][0] = c.first.a - grid.origin[0];
+    v[1][0] = c.first.b - grid.origin[1];
+    v[2][0] = c.first.c - grid.origin[2];
+    v[0][1] = c.first.d - grid.origin[0];
+    v[1][1] = c.next.a - grid.origin[1];
+    v[2][1] = c.next.b - grid.origin[2];
+    v[0][2] = c.next.c - grid.origin[0];
+    v[1][2] = c.next.d - grid.origin[1];
+    v[2][2] = c.last - grid.origin[2];
     sk_span_of3(v[t->kx][0], v[t->kx][1], v[t->kx][2], r.x);
     sk_span_of3(v[t->ky][0], v[t->ky][1], v[t->ky][2], r.y);
     sk_span_of3(v[t->kz][0] * t->sign, v[t->kz][1] * t->sign, v[t->kz][2] * t->sign, r.z);

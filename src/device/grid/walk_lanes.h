@@ -271,8 +271,6 @@ SK_FUNCTION sk_u32 sk_add_tasks(sk_grid_tables tables, sk_flight* flights, sk_u3
     return count;
 }
 
-/** So many triangles are more than a core's own caches hold, so that it pays to ask for them ahead: 9 MB. */
-#define SK_FAR_TRIANGLES 0x40000u
 /** The tasks between the one that is done and the one whose triangles are asked for. */
 #define SK_TASKS_AHEAD 2u
 

@@ -86,7 +86,7 @@ SK_FUNCTION sk_view_lanes sk_shear_lanes(sk_ray_lanes ray, sk_vec3N v0, sk_vec3N
 SK_FUNCTION sk_view_lanes sk_view_triangle_lanes(sk_ray_lanes ray, SK_GLOBAL const float* triangles,
                                                  sk_iN number) {
     const sk_columns p = sk_gather4(triangles, number, 9u), q = sk_gather4(triangles + 4, number, 9u);
-    const sk_fN last = sk_gather_f(triangles + 8, number, 9u);
+    const sk_fN last = sk_gather_f(triangles + 8, number, 9u); /* in the midst of a test that is better than sk_gather9() */
     return sk_shear_lanes(ray, sk_turn_axes(ray, sk_make3_f(p.a - ray.o.x, p.b - ray.o.y, p.c - ray.o.z)),
                           sk_turn_axes(ray, sk_make3_f(p.d - ray.o.x, q.a - ray.o.y, q.b - ray.o.z)),
                           sk_turn_axes(ray, sk_make3_f(q.c - ray.o.x, q.d - ray.o.y, last - ray.o.z)));
