@@ -62,9 +62,18 @@ TEST_P(Plan, IsExact) {
     }
 }
 
+/// What a grid's own tables hold.
+using Words = std::vector<std::uint32_t>;
+
+Words words_of(setka::Queue& queue, const setka::CompactTables& tables) {
+    Words words = queue.download(tables.blocks);
+    for (const Words& more : {queue.download(tables.cells), queue.download(tables.references)}) words.insert(words.end(), more.begin(), more.end());
+    return words;
+}
+
 /// The peak of the plan that is made within a budget beside the scene; 0 if there is none, which plan() says. Where a stop can
-/// be requested, nothing is allocated before its size is known.
-std::uint64_t peak_within(const std::string& device, const setka::Scene& scene, std::uint64_t bytes,
+/// be requested, nothing is allocated before its size is known. `tables` are those of the grid that is built, or become them where there are none.
+std::uint64_t peak_within(const std::string& device, const setka::Scene& scene, std::uint64_t bytes, Words& tables,
                           const std::stop_token& token = {}) {
     const setka::GridOptions options{.density = 64};
     std::uint64_t scene_bytes = 0;
@@ -87,28 +96,33 @@ std::uint64_t peak_within(const std::string& device, const setka::Scene& scene, 
         return 0;
     }
     const std::uint64_t peak_bytes = plan->peak_bytes();
-    EXPECT_GT(builder->build(queue, std::move(*plan)).header().reference_count, 0u);
+    const setka::Grid grid = builder->build(queue, std::move(*plan));
+    EXPECT_GT(grid.header().reference_count, 0u);
+    const Words own = words_of(queue, grid.compact_tables());
+    if (tables.empty()) tables = own;
+    EXPECT_TRUE(own == tables) << "other tables within " << bytes << " bytes";
     return peak_bytes;
 }
 
-/// A budget of exactly the peak suffices. With one byte less there is no room for blocks that there might be, or for bins; the smallest way of
+/// A budget of exactly the peak suffices, and the tables are the same within each. With one byte less there is no room for blocks that there might be, or for bins; the smallest way of
 /// all with one byte less is refused by plan() already, whether each launch is waited for or none.
 TEST_P(Plan, IsEnoughAndNotTooMuch) {
     const setka::Scene scene = make(other());
     const std::string& device = std::get<0>(GetParam());
     constexpr std::uint64_t plenty = std::uint64_t{1} << 30;
     const std::stop_source stop;
-    std::uint64_t peak_bytes = peak_within(device, scene, plenty), least_bytes = 0;
-    EXPECT_GE(peak_bytes, peak_within(device, scene, plenty, stop.get_token()));
+    Words tables;
+    std::uint64_t peak_bytes = peak_within(device, scene, plenty, tables), least_bytes = 0;
+    EXPECT_GE(peak_bytes, peak_within(device, scene, plenty, tables, stop.get_token()));
     for (std::uint32_t smaller = 0; peak_bytes != 0; ++smaller) {
         ASSERT_LT(smaller, 8u) << "each with another peak";
-        EXPECT_EQ(peak_within(device, scene, peak_bytes), peak_bytes);
+        EXPECT_EQ(peak_within(device, scene, peak_bytes, tables), peak_bytes);
         least_bytes = peak_bytes;
-        peak_bytes = peak_within(device, scene, least_bytes - 1);
+        peak_bytes = peak_within(device, scene, least_bytes - 1, tables);
         ASSERT_LT(peak_bytes, least_bytes);
     }
-    EXPECT_EQ(peak_within(device, scene, least_bytes, stop.get_token()), least_bytes);
-    EXPECT_EQ(peak_within(device, scene, least_bytes - 1, stop.get_token()), 0u);
+    EXPECT_EQ(peak_within(device, scene, least_bytes, tables, stop.get_token()), least_bytes);
+    EXPECT_EQ(peak_within(device, scene, least_bytes - 1, tables, stop.get_token()), 0u);
 }
 
 class GridErrors : public support::DeviceTest {};
