@@ -104,8 +104,8 @@ std::uint64_t peak_within(const std::string& device, const setka::Scene& scene, 
     return peak_bytes;
 }
 
-/// A budget of exactly the peak suffices, and the tables are the same within each. With one byte less there is no room for blocks that there might be, or for bins; the smallest way of
-/// all with one byte less is refused by plan() already, whether each launch is waited for or none.
+/// A budget of exactly the peak suffices, and the tables are the same within each. With one byte less there is no room for counts that are kept, for
+/// blocks that there might be, or for bins; the smallest way of all with one byte less is refused by plan() already, whether each launch is waited for or none.
 TEST_P(Plan, IsEnoughAndNotTooMuch) {
     const setka::Scene scene = make(other());
     const std::string& device = std::get<0>(GetParam());
